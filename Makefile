@@ -1,0 +1,32 @@
+# Every target sets itself up; needs CPython 3.13 as python3.13, through pyenv, or through uv.
+PYTHON := .venv/bin/python
+STAMP := .venv/.installed
+DIST := dist
+# What "blender --command extension" runs, with its list of valid tags, without a Blender application.
+BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli import cli_extension_handler as run; sys.exit(run(sys.argv[1:]))'
+
+.PHONY: demo test extension clean
+
+demo: $(STAMP)
+	$(PYTHON) -m nested_dielectric demo
+
+test: $(STAMP)
+	$(PYTHON) -m pytest
+
+extension: $(STAMP)
+	@mkdir -p $(DIST)
+	$(BLENDER_EXTENSION) build --output-dir $(DIST)
+	$(BLENDER_EXTENSION) validate $(DIST)/nested_dielectric-0.1.0.zip
+
+$(STAMP): pyproject.toml
+	@python=$$(python3.13 -c 'import sys; print(sys.executable)' 2>/dev/null \
+	  || PYENV_VERSION=$$(pyenv versions --bare 2>/dev/null | grep '^3\.13' | tail -n 1) pyenv which python3.13 2>/dev/null \
+	  || uv python find 3.13 2>/dev/null) \
+	  && "$$python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 13))' 2>/dev/null \
+	  || { echo 'CPython 3.13 is needed: install it as python3.13, with "pyenv install 3.13" or with "uv python install 3.13"' >&2; exit 1; }; \
+	"$$python" -m venv --clear .venv
+	$(PYTHON) -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	@touch $@
+
+clean:
+	rm -rf .venv out dist

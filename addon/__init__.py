@@ -1,0 +1,33 @@
+"""Nested dielectrics for Blender: glass, liquids and ice that touch.
+
+::
+
+    import nested_dielectric as nd
+
+    nd.register()
+    water = nd.new_material("Water", preset="water", roughness=0.0)
+    nd.assign(obj, water, priority=2)
+    print(nd.prepare(bpy.context.scene))
+"""
+
+from .compatibility import UnsupportedError
+from .materials import new_material
+from .media import assign, get_priority, set_priority
+from .parameters import ParameterError
+from .preparation import Preparation, prepare
+from .presets import preset_names
+from .registration import register, unregister
+
+__all__ = [
+    "ParameterError",
+    "Preparation",
+    "UnsupportedError",
+    "assign",
+    "get_priority",
+    "new_material",
+    "prepare",
+    "preset_names",
+    "register",
+    "set_priority",
+    "unregister",
+]

@@ -1,0 +1,139 @@
+"""What is wrong with a scene's media, object by object, and what to do about it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import bpy
+import numpy as np
+from mathutils.bvhtree import BVHTree
+
+from . import meshes
+from .materials import dielectric_node, dielectrics, medium_material
+from .media import get_priority, media
+from .node_group import MATERIAL_SLOTS
+from .parameters import NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
+
+
+@dataclass(frozen=True)
+class Problem:
+    """What is wrong with one object, and the remedy."""
+
+    name: str
+    text: str
+    remedy: str
+
+    def __str__(self) -> str:
+        return f"{self.name!r} {self.text}: {self.remedy}"
+
+
+@dataclass(frozen=True)
+class _Shape:
+    """An evaluated mesh in world space."""
+
+    obj: bpy.types.Object
+    vertices: np.ndarray
+    triangles: np.ndarray
+
+
+def find_problems(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> list[Problem]:
+    """Look at every medium of a scene as it is evaluated now; change nothing."""
+    depsgraph = depsgraph or bpy.context.evaluated_depsgraph_get()
+    objects = media(scene)
+    shapes = [shape for obj in objects if (shape := _shape(obj, depsgraph)) is not None]
+    problems = [problem for obj in objects for problem in _object_problems(obj)]
+    for shape in shapes:
+        problems += _mesh_problems(shape)
+    problems += _overlap_problems(shapes)
+    return problems
+
+
+def _shape(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Shape | None:
+    evaluated = obj.evaluated_get(depsgraph)
+    try:
+        mesh = evaluated.to_mesh()
+    except RuntimeError:
+        return None
+    if mesh is None:
+        return None
+    try:
+        mesh.calc_loop_triangles()
+        vertices = np.empty(len(mesh.vertices) * 3, dtype=np.float32)
+        triangles = np.empty(len(mesh.loop_triangles) * 3, dtype=np.int32)
+        mesh.vertices.foreach_get("co", vertices)
+        mesh.loop_triangles.foreach_get("vertices", triangles)
+    finally:
+        evaluated.to_mesh_clear()
+    matrix = np.array(evaluated.matrix_world, dtype=np.float64)
+    world = vertices.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    triangles = triangles.reshape(-1, 3)
+    if np.linalg.det(matrix[:3, :3]) < 0.0:
+        triangles = triangles[:, ::-1]
+    return _Shape(obj, world, triangles)
+
+
+def _object_problems(obj: bpy.types.Object) -> list[Problem]:
+    problems = []
+    value = obj.get(PRIORITY_PROPERTY)
+    if value is not None and not isinstance(value, int):
+        problems.append(Problem(obj.name, f"has the custom property {PRIORITY_PROPERTY!r} with no whole number in it", "delete it, or set its priority again"))
+    for slot, material in dielectrics(obj):
+        if slot >= MATERIAL_SLOTS:
+            problems.append(
+                Problem(obj.name, f"has a nested dielectric in slot {slot + 1}, where its neighbours do not look", f"move it to one of the first {MATERIAL_SLOTS} slots")
+            )
+        node = dielectric_node(material)
+        for name in NEIGHBOUR_PARAMETERS:
+            if node.inputs[name].is_linked:
+                problems.append(
+                    Problem(obj.name, f"has a link into {name!r} of material {material.name!r}, which the media it touches cannot follow", "unlink it; set, keyframe or drive the value itself")
+                )
+    return problems
+
+
+def _mesh_problems(shape: _Shape) -> list[Problem]:
+    name = shape.obj.name
+    if len(shape.triangles) == 0:
+        return [Problem(name, "has no faces", "give it a closed mesh, or another material")]
+    if not np.isfinite(shape.vertices).all():
+        return [Problem(name, "has coordinates that are not numbers", "remove those vertices, or the modifier that makes them")]
+    edges = meshes.open_edge_count(shape.triangles)
+    if edges:
+        return [Problem(name, f"is not closed or its faces are turned against each other ({edges} edges)", "close it (Mesh > Clean Up > Fill Holes, or a Solidify modifier) and recalculate its normals")]
+    if meshes.signed_volume(shape.vertices, shape.triangles) < 0.0:
+        return [Problem(name, "has its normals pointing inwards", "recalculate them in Edit Mode (Mesh > Normals > Recalculate Outside)")]
+    return []
+
+
+def _signature(obj: bpy.types.Object) -> tuple:
+    node = dielectric_node(medium_material(obj))
+    return tuple(
+        tuple(value) if hasattr(value, "__len__") else value
+        for value in (node.inputs[name].default_value for name in NEIGHBOUR_PARAMETERS[1:])
+    )
+
+
+def _overlap_problems(shapes: list[_Shape]) -> list[Problem]:
+    """Objects of equal priority that overlap are one medium; that they should be two different ones cannot be meant."""
+    problems = []
+    boxes = [(shape.vertices.min(axis=0), shape.vertices.max(axis=0)) if len(shape.vertices) else None for shape in shapes]
+    trees: dict[int, BVHTree] = {}
+
+    def tree(index: int) -> BVHTree:
+        if index not in trees:
+            shape = shapes[index]
+            trees[index] = BVHTree.FromPolygons(shape.vertices.tolist(), shape.triangles.tolist(), all_triangles=True)
+        return trees[index]
+
+    for i, j in combinations(range(len(shapes)), 2):
+        a, b = shapes[i].obj, shapes[j].obj
+        if get_priority(a) != get_priority(b) or _signature(a) == _signature(b) or boxes[i] is None or boxes[j] is None:
+            continue
+        if meshes.boxes_overlap(*boxes[i], *boxes[j]) and tree(i).overlap(tree(j)):
+            problems.append(
+                Problem(a.name, f"overlaps {b.name!r} with the same priority {get_priority(a)} and another medium", "give the one that should win the lower priority")
+            )
+    return problems
+
+

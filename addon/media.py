@@ -1,0 +1,138 @@
+"""Media in a scene: giving objects a material and a priority, and listing who wins over whom.
+
+A material's priority is the default; an object's own custom property overrides it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import bpy
+
+from .materials import dielectric_node, medium_material, preset_material
+from .parameters import BY_KEYWORD, GROUP_NAME, MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
+
+
+def assign(
+    obj: bpy.types.Object, material: bpy.types.Material | str, priority: int | None = None
+) -> bpy.types.Material:
+    """Make an object a medium.
+
+    The material takes the place of the object's active material, or its first slot. ``material`` may be the name of a preset:
+    a material of that preset that is already in the file is used again.
+
+    :param priority: the object's own priority; None leaves that of the material in force.
+    :raises ParameterError: if the object cannot carry a material, or the preset or the priority is unknown.
+    """
+    if getattr(obj.data, "materials", None) is None:
+        raise ParameterError(f"{obj.name!r} is {obj.type.lower()}; a medium needs a closed mesh, curve, surface, text or metaball")
+    if priority is not None:
+        check_priority(priority)
+    if isinstance(material, str):
+        material = preset_material(material)
+    elif dielectric_node(material) is None:
+        raise ParameterError(f"material {material.name!r} has no node {GROUP_NAME!r}; make it with new_material()")
+    if obj.material_slots:
+        obj.active_material = material
+    else:
+        obj.data.materials.append(material)
+    if priority is not None:
+        set_priority(obj, priority)
+    return material
+
+
+def check_priority(priority: int) -> int:
+    """Return ``priority`` as a whole number from 0 to 1000; :class:`ParameterError` if it is none."""
+    return BY_KEYWORD["priority"].check(priority)
+
+
+def set_priority(obj: bpy.types.Object, priority: int | None) -> None:
+    """Give an object a priority of its own, or with None return it to that of its material.
+
+    It is a custom property of the object, so it is copied, undone, animated and saved as any other.
+    """
+    if priority is None:
+        obj.pop(PRIORITY_PROPERTY, None)
+    else:
+        obj[PRIORITY_PROPERTY] = check_priority(priority)
+        obj.id_properties_ui(PRIORITY_PROPERTY).update(
+            min=0, max=MAX_PRIORITY, description="Where media overlap, the lowest number wins"
+        )
+    obj.update_tag()
+
+
+def own_priority(obj: bpy.types.Object) -> int | None:
+    """Return the priority that overrides the material's, or None."""
+    value = obj.get(PRIORITY_PROPERTY)
+    return int(value) if isinstance(value, (int, float)) else None
+
+
+def get_priority(obj: bpy.types.Object) -> int:
+    """Return the priority an object renders with. Raises :class:`ParameterError` if it is no medium."""
+    material = medium_material(obj)
+    if material is None:
+        raise ParameterError(f"{obj.name!r} has no nested dielectric material; give it one with assign()")
+    own = own_priority(obj)
+    return dielectric_node(material).inputs["Priority"].default_value if own is None else own
+
+
+def media(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """Return every object of a scene that is a medium, those in instanced collections too, in winning order."""
+    objects = set(scene.objects)
+    pending = [obj.instance_collection for obj in objects if obj.instance_collection is not None]
+    seen = set()
+    while pending:
+        collection = pending.pop()
+        if collection in seen:
+            continue
+        seen.add(collection)
+        for obj in collection.all_objects:
+            objects.add(obj)
+            if obj.instance_collection is not None:
+                pending.append(obj.instance_collection)
+    return winning_order(objects)
+
+
+def winning_order(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
+    """Return the media among ``objects``, the one that wins over all others first."""
+    found = [obj for obj in objects if medium_material(obj) is not None]
+    return sorted(found, key=lambda obj: (get_priority(obj), obj.name))
+
+
+def move_priority(scene: bpy.types.Scene, obj: bpy.types.Object, step: int) -> bool:
+    """Move an object one place up (-1) or down (+1) in the winning order; False if it is at the end already.
+
+    An object that shares its priority with others is parted from them; one that has its own changes places with the next level.
+    """
+    levels: dict[int, list[bpy.types.Object]] = {}
+    for medium in media(scene):
+        levels.setdefault(get_priority(medium), []).append(medium)
+    numbers = sorted(levels)
+    priority = get_priority(obj)
+    place = numbers.index(priority)
+    if len(levels[priority]) > 1:
+        levels[priority].remove(obj)
+        order = [levels[number] for number in numbers]
+        order.insert(place if step < 0 else place + 1, [obj])
+        _renumber(order)
+        return True
+    other = place + step
+    if not 0 <= other < len(numbers):
+        return False
+    for medium in levels[numbers[other]]:
+        set_priority(medium, priority)
+    set_priority(obj, numbers[other])
+    return True
+
+
+def _renumber(order: list[list[bpy.types.Object]]) -> None:
+    """Number levels upwards, keeping the numbers in use as far as the order and the highest number allow."""
+    numbers: list[int] = []
+    for level in order:
+        numbers.append(max(numbers[-1] + 1 if numbers else 0, min(get_priority(obj) for obj in level)))
+    if numbers[-1] > MAX_PRIORITY:
+        numbers = list(range(len(order)))
+    for level, number in zip(order, numbers):
+        for obj in level:
+            if get_priority(obj) != number:
+                set_priority(obj, number)

@@ -1,0 +1,221 @@
+"""Every parameter of the material, written down once.
+
+Sockets of the node group, keyword arguments of :func:`nested_dielectric.new_material`, the names a preset file may
+use, the inputs of the OSL shader and the manual's table all come from :data:`PARAMETERS`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any
+
+GROUP_NAME = "Nested Dielectric"
+"""Name of the node group and of the group node in a material; the shader reads neighbours' sockets by it."""
+
+PRIORITY_PROPERTY = "nd_priority"
+"""Custom property of an object that overrides the priority of its material."""
+
+MAX_PRIORITY = 1000
+
+
+class ParameterError(ValueError):
+    """An unknown parameter, or a value that it cannot take. The text names both and the remedy."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One word of an enumeration: its keyword, its name in menus and what it means."""
+
+    keyword: str
+    name: str
+    description: str
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of the material.
+
+    ``kind`` is one of ``INT``, ``FLOAT``, ``BOOL``, ``COLOR`` (scene-linear RGB), ``VECTOR``, ``MENU`` and ``SHADER``;
+    ``minimum`` and ``maximum`` are hard limits, ``unit`` the subtype of the socket (``FACTOR``, ``DISTANCE``,
+    ``WAVELENGTH``, ``DIRECTION`` or empty).
+    """
+
+    name: str
+    panel: str
+    kind: str
+    default: Any
+    description: str
+    minimum: float | None = None
+    maximum: float | None = None
+    unit: str = ""
+    choices: tuple[Choice, ...] = ()
+
+    @property
+    def keyword(self) -> str:
+        """The name in Python and in preset files: the socket's name in snake_case."""
+        return self.name.lower().replace(" ", "_")
+
+    @property
+    def osl_name(self) -> str:
+        """The name of the shader's input."""
+        return "".join(word[0].upper() + word[1:] for word in self.name.split())
+
+    def check(self, value: Any) -> Any:
+        """Return ``value`` as the type the parameter holds; :class:`ParameterError` if it cannot hold it."""
+        return _CHECKS[self.kind](self, value)
+
+
+def _number(parameter: Parameter, value: Any) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ParameterError(f"{parameter.keyword}={value!r}: a number is needed") from None
+    if not isfinite(number):
+        raise ParameterError(f"{parameter.keyword}={value!r}: a finite number is needed")
+    low, high = parameter.minimum, parameter.maximum
+    if (low is not None and number < low) or (high is not None and number > high):
+        raise ParameterError(f"{parameter.keyword}={value!r} is outside {_range(parameter)}")
+    return number
+
+
+def _integer(parameter: Parameter, value: Any) -> int:
+    number = _number(parameter, value)
+    if number != int(number):
+        raise ParameterError(f"{parameter.keyword}={value!r}: a whole number is needed")
+    return int(number)
+
+
+def _boolean(parameter: Parameter, value: Any) -> bool:
+    if value in (0, 1):
+        return bool(value)
+    raise ParameterError(f"{parameter.keyword}={value!r}: True or False is needed")
+
+
+def _triple(parameter: Parameter, value: Any) -> tuple[float, float, float]:
+    try:
+        components = tuple(value)
+    except TypeError:
+        components = ()
+    if isinstance(value, str) or len(components) not in ((3, 4) if parameter.kind == "COLOR" else (3,)):
+        raise ParameterError(f"{parameter.keyword}={value!r}: three numbers are needed")
+    return tuple(_number(parameter, component) for component in components[:3])
+
+
+def _choice(parameter: Parameter, value: Any) -> Choice:
+    for choice in parameter.choices:
+        if value == choice.keyword:
+            return choice
+    words = ", ".join(choice.keyword for choice in parameter.choices)
+    raise ParameterError(f"{parameter.keyword}={value!r}: one of {words} is needed")
+
+
+def _shader(parameter: Parameter, value: Any) -> None:
+    raise ParameterError(f"{parameter.keyword} is a Shader socket: link a shader node to '{parameter.name}' instead")
+
+
+_CHECKS = {
+    "INT": _integer,
+    "FLOAT": _number,
+    "BOOL": _boolean,
+    "COLOR": _triple,
+    "VECTOR": _triple,
+    "MENU": _choice,
+    "SHADER": _shader,
+}
+
+SHADOW_MODES = (
+    Choice("BLACK", "Black", "No light passes a shadow; light arrives by paths alone, as caustics"),
+    Choice("TRANSMISSION", "Transmission Only", "Shadows take the colour that absorption leaves"),
+    Choice(
+        "OUTSIDE_FRESNEL",
+        "Transmission and Outside Fresnel",
+        "Also darker by what the surface reflects where a shadow ray enters from air",
+    ),
+    Choice(
+        "ALL_FRESNEL",
+        "Transmission and All Fresnel",
+        "Also darker by what every interface reflects; total reflection shows as black edges",
+    ),
+)
+
+DISTRIBUTIONS = (
+    Choice("GGX", "GGX", "Single scattering: rough surfaces lose some energy"),
+    Choice("MULTI_GGX", "Multiscatter GGX", "Keeps the energy of light that scatters several times on the microsurface"),
+    Choice("BECKMANN", "Beckmann", "A narrower lobe with shorter tails"),
+)
+
+PARAMETERS: tuple[Parameter, ...] = (
+    Parameter(
+        "Priority", "Medium", "INT", 0, "Where media overlap the lowest number wins; equal numbers are one medium. "
+        "An object's own priority overrides this one", 0, MAX_PRIORITY,
+    ),
+    Parameter("IOR", "Medium", "FLOAT", 1.33, "Index of refraction against vacuum. Keep it unlinked: neighbours read its value",
+              0.01, 100.0),
+    Parameter("Transmittance", "Medium", "COLOR", (1.0, 1.0, 1.0),
+              "Colour left of white light after it has travelled Transmittance Depth in the medium", 0.0, 1.0),
+    Parameter("Transmittance Depth", "Medium", "FLOAT", 1.0,
+              "Distance after which Transmittance is left, in scene units; 0 switches absorption off", 0.0, 1e6, "DISTANCE"),
+    Parameter("Roughness", "Surface", "FLOAT", 0.0, "Roughness of reflection and refraction (alpha is its square)",
+              0.0, 1.0, "FACTOR"),
+    Parameter("Distribution", "Surface", "MENU", "MULTI_GGX", "Distribution of microfacet normals of a rough surface",
+              choices=DISTRIBUTIONS),
+    Parameter("Anisotropy", "Surface", "FLOAT", 0.0,
+              "Stretches rough reflections across (positive) or along (negative) the tangent; Cycles refracts isotropically",
+              -0.99, 0.99),
+    Parameter("Tangent", "Surface", "VECTOR", (0.0, 0.0, 0.0),
+              "Direction along the surface that anisotropy refers to; without a link, around the object's Z axis", unit="DIRECTION"),
+    Parameter("Normal", "Surface", "VECTOR", (0.0, 0.0, 0.0), "Normal or bump map; without a link, the surface's own normal",
+              unit="DIRECTION"),
+    Parameter("Thin Film Thickness", "Thin Film", "FLOAT", 0.0, "Thickness of an interfering film on the surface, in nm; 0 is none",
+              0.0, 100000.0, "WAVELENGTH"),
+    Parameter("Thin Film IOR", "Thin Film", "FLOAT", 1.33, "Index of refraction of the film", 1.0, 100.0),
+    Parameter("Refraction Scale", "Reflection and Refraction", "FLOAT", 1.0, "Scales all refraction; 1 is physical", 0.0, 1.0, "FACTOR"),
+    Parameter("Specular Scale", "Reflection and Refraction", "FLOAT", 1.0, "Scales all reflection; 1 is physical", 0.0, 1.0, "FACTOR"),
+    Parameter("Internal Reflections", "Reflection and Refraction", "BOOL", True,
+              "Weak reflections inside media; total internal reflection stays when they are off"),
+    Parameter("Shadow Mode", "Shadows", "MENU", "OUTSIDE_FRESNEL", "What light that goes straight through leaves in shadows",
+              choices=SHADOW_MODES),
+    Parameter("Emission at Interfaces", "Emission", "SHADER", None, "Shader added at every interface between two media or a medium and air"),
+    Parameter("Emission at Entrances", "Emission", "SHADER", None, "Shader added where a ray enters a medium from air"),
+    Parameter("Emission at Exits", "Emission", "SHADER", None, "Shader added where a ray leaves all media into air"),
+)
+
+BY_KEYWORD = {parameter.keyword: parameter for parameter in PARAMETERS}
+
+NEIGHBOUR_PARAMETERS = ("Priority", "IOR", "Transmittance", "Transmittance Depth")
+"""Sockets whose values other media read while they render; a link into them is not seen by neighbours."""
+
+
+def check_keywords(keywords: dict[str, Any]) -> dict[Parameter, Any]:
+    """Match keyword arguments to parameters and check their values; :class:`ParameterError` for the first that is wrong."""
+    checked = {}
+    for keyword, value in keywords.items():
+        if keyword not in BY_KEYWORD:
+            raise ParameterError(f"unknown parameter {keyword!r}; known are: {', '.join(BY_KEYWORD)}")
+        parameter = BY_KEYWORD[keyword]
+        checked[parameter] = parameter.check(value)
+    return checked
+
+
+def _range(parameter: Parameter) -> str:
+    low, high = parameter.minimum, parameter.maximum
+    if low is None and high is None:
+        return ""
+    return f"{low:g} to {high:g}"
+
+
+def _cell(parameter: Parameter) -> tuple[str, ...]:
+    default = parameter.default
+    if parameter.kind in ("COLOR", "VECTOR"):
+        default = ", ".join(f"{component:g}" for component in default)
+    elif parameter.kind == "SHADER":
+        default = "none"
+    values = _range(parameter) or ", ".join(f"`{choice.keyword}`" for choice in parameter.choices)
+    return f"**{parameter.name}**", f"`{parameter.keyword}`", str(default), values, parameter.description
+
+
+def manual_table() -> str:
+    """The manual's table of parameters, in Markdown."""
+    rows = [("Socket", "Keyword", "Default", "Values", "Meaning"), ("---",) * 5, *map(_cell, PARAMETERS)]
+    return "\n".join(f"| {' | '.join(row)} |" for row in rows)

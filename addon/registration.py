@@ -1,0 +1,71 @@
+"""Putting the extension into Blender and taking it out again."""
+
+from __future__ import annotations
+
+import sys
+from contextlib import ExitStack
+
+import bpy
+
+from . import operators, panels
+from .compatibility import blender_problem, settings_problem
+from .media import media
+
+_registered: ExitStack | None = None
+"""How to take out what :func:`register` put in; None while nothing is in."""
+
+
+def register() -> None:
+    """Put operators, panels, menus and the command line's command into Blender; a second call changes nothing.
+
+    If any of it fails, what went before is taken out again and the error is raised.
+    """
+    global _registered
+    if _registered is not None:
+        return
+    with ExitStack() as undo:
+        for cls in (*operators.CLASSES, *panels.CLASSES):
+            bpy.utils.register_class(cls)
+            undo.callback(bpy.utils.unregister_class, cls)
+
+        bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
+            name="Active Medium", get=panels.get_active, set=panels.set_active, options=set()
+        )
+        undo.callback(delattr, bpy.types.Scene, "nested_dielectric_active")
+
+        bpy.types.VIEW3D_MT_object.append(operators.draw_preset_menu)
+        undo.callback(bpy.types.VIEW3D_MT_object.remove, operators.draw_preset_menu)
+
+        bpy.app.handlers.render_init.append(warn_before_render)
+        undo.callback(bpy.app.handlers.render_init.remove, warn_before_render)
+
+        command = bpy.utils.register_cli_command("nested_dielectric", run_command)
+        undo.callback(bpy.utils.unregister_cli_command, command)
+
+        _registered = undo.pop_all()
+    problem = blender_problem()
+    if problem:
+        print(f"Nested Dielectric: {problem}", file=sys.stderr)
+
+
+def unregister() -> None:
+    """Take out everything that :func:`register` put in."""
+    global _registered
+    if _registered is not None:
+        undo, _registered = _registered, None
+        undo.close()
+
+
+@bpy.app.handlers.persistent
+def warn_before_render(scene: bpy.types.Scene, *_: object) -> None:
+    """Say on the terminal why the media of a scene will not look right, where no panel is open to say so."""
+    problem = blender_problem() or settings_problem(scene)
+    if problem and media(scene):
+        print(f"Nested Dielectric: {problem}", file=sys.stderr)
+
+
+def run_command(arguments: list[str]) -> int:
+    """``blender --command nested_dielectric``."""
+    from . import cli
+
+    return cli.command(arguments)

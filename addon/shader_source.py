@@ -1,0 +1,27 @@
+"""The OSL source as one text, so that a .blend can carry it without the files beside it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+OSL_FOLDER = Path(__file__).resolve().parent.parent / "osl"
+
+_INCLUDE = re.compile(r'^#include "(.+)"\n', re.MULTILINE)
+
+
+def inlined_source(name: str, folder: Path = OSL_FOLDER) -> str:
+    """Return shader ``name`` with every header it includes in place, each once.
+
+    Raises :class:`FileNotFoundError` with the path of what is missing.
+    """
+    seen: set[str] = set()
+
+    def inline(filename: str) -> str:
+        if filename in seen:
+            return ""
+        seen.add(filename)
+        text = (folder / filename).read_text(encoding="utf-8").replace("#pragma once\n", "")
+        return _INCLUDE.sub(lambda match: inline(match.group(1)), text)
+
+    return inline(name)

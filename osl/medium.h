@@ -1,0 +1,100 @@
+/* A medium and how to read the one that another object is made of.
+ *
+ * Priorities order media: where several fill the same point the lowest number wins.
+ * Air fills what no medium claims, so its priority is above every number an artist can give. */
+#pragma once
+
+#define AIR_PRIORITY 1e9
+
+/* Material slots an object's dielectric is looked for in when the face that was hit has another material. */
+#define MATERIAL_SLOTS 8
+
+struct Medium {
+  float priority;
+  float ior;
+  color transmittance;       /* colour that is left after transmittance_depth */
+  float transmittance_depth; /* scene units */
+};
+
+Medium air()
+{
+  Medium m = {AIR_PRIORITY, 1.0, color(1.0), 1.0};
+  return m;
+}
+
+/* An index of refraction that Snell's law can use, whatever the artist typed. A comparison with NaN is false. */
+float usable_ior(float ior)
+{
+  return (ior > 1e-3 && ior < 1e3) ? ior : 1.0;
+}
+
+int absorbs(Medium m)
+{
+  return min(m.transmittance[0], min(m.transmittance[1], m.transmittance[2])) < 1.0 && m.transmittance_depth > 0.0;
+}
+
+/* Cycles evaluates these RNA paths on the evaluated object, so a neighbour's keyframed or driven socket is read as it is
+ * at the rendered frame and nothing of the extension is needed. The fourth component tells a value (1) from a missing path (0). */
+#define OBJECT_PRIORITY "\001object:nd_priority"
+#define SOCKET(slot, name) \
+  "\001object:material_slots[" slot "].material.node_tree.nodes[\"Nested Dielectric\"].inputs[\"" name "\"].default_value"
+#define SOCKETS(name) \
+  { SOCKET("0", name), SOCKET("1", name), SOCKET("2", name), SOCKET("3", name), \
+    SOCKET("4", name), SOCKET("5", name), SOCKET("6", name), SOCKET("7", name) }
+
+/* Slot of the dielectric that the object hit last by trace() is made of there; -1 if it is no medium. */
+int hit_slot()
+{
+  string priorities[MATERIAL_SLOTS] = SOCKETS("Priority");
+  float value[4];
+  float index = 0.0;
+  getmessage("trace", "material_index", index);
+  int slot = (int)index;
+  if (slot < MATERIAL_SLOTS && getmessage("trace", priorities[slot], value) && value[3] > 0.0)
+    return slot;
+  /* A label on a bottle is a foreign material on the bottle's closed surface. */
+  for (slot = 0; slot < MATERIAL_SLOTS; slot++) {
+    if (getmessage("trace", priorities[slot], value) && value[3] > 0.0)
+      return slot;
+  }
+  return -1;
+}
+
+/* Priority of the medium that was hit last by trace(); AIR_PRIORITY if the object is foreign. The object's own
+ * value, where it has one, overrides the material's. */
+float hit_priority(output int slot)
+{
+  string priorities[MATERIAL_SLOTS] = SOCKETS("Priority");
+  float value[4];
+  slot = -1;
+  if (!getmessage("trace", OBJECT_PRIORITY, value))
+    return AIR_PRIORITY; /* no material on it asks for the property: not a medium */
+  if (value[3] > 0.0)
+    return value[0];
+  slot = hit_slot();
+  if (slot < 0)
+    return AIR_PRIORITY;
+  getmessage("trace", priorities[slot], value);
+  return value[0];
+}
+
+/* The rest of what the medium that was hit last is made of. */
+Medium hit_medium(float priority, int known_slot)
+{
+  string iors[MATERIAL_SLOTS] = SOCKETS("IOR");
+  string transmittances[MATERIAL_SLOTS] = SOCKETS("Transmittance");
+  string depths[MATERIAL_SLOTS] = SOCKETS("Transmittance Depth");
+  Medium m = air();
+  m.priority = priority;
+  int slot = (known_slot < 0) ? hit_slot() : known_slot;
+  if (slot >= 0) {
+    float value[4];
+    getmessage("trace", iors[slot], value);
+    m.ior = usable_ior(value[0]);
+    getmessage("trace", transmittances[slot], value);
+    m.transmittance = clamp(color(value[0], value[1], value[2]), color(0.0), color(1.0));
+    getmessage("trace", depths[slot], value);
+    m.transmittance_depth = value[0];
+  }
+  return m;
+}

@@ -1,0 +1,126 @@
+/* What a point lies in, asked of the scene by trace(). */
+#pragma once
+
+#include "medium.h"
+
+/* Crossings one probe may count. A ray through a whole forest meets fewer. */
+#define PROBE_HITS 1024
+/* Priorities that may be open along a probe at the same time. */
+#define PROBE_LEVELS 64
+
+/* The next float after t, so that the surface just met is left behind and the very next one is not. */
+float step_past(float t)
+{
+  return t + t * 1.2e-7 + 1e-30;
+}
+
+/* +1 if the surface hit last was left from its inside, -1 if it was entered from its outside.
+ *
+ * trace() turns the hit's normal towards the ray, so the side is gone from it, and the winding of the vertices is reversed
+ * by a mirroring transform. What keeps the side is the hit's surface parametrisation: Cycles negates dP/du on back faces,
+ * so the derivatives of u and v, put back on the triangle's edges, give dP/dx with the side's sign. */
+int hit_crossing(vector direction)
+{
+  float u = 0.0, v = 0.0;
+  point q = point(0.0);
+  point vertex[3];
+  getmessage("trace", "u", u);
+  getmessage("trace", "v", v);
+  getmessage("trace", "P", q);
+  getmessage("trace", "geom:trianglevertices", vertex);
+  vector e1 = vertex[1] - vertex[0];
+  vector e2 = vertex[2] - vertex[0];
+  float side = dot(e1 * Dx(u) + e2 * Dx(v), Dx(q));
+  if (side == 0.0) /* a ray without differentials */
+    side = -dot(cross(e1, e2), direction);
+  return (side < 0.0) ? 1 : -1;
+}
+
+/* The medium that fills the point just off P in the given direction, P's own object left out, with the number of objects
+ * of its priority that hold the point.
+ *
+ * The winding number of a closed surface about a point is the sum of the signed crossings along any ray from it (Jacobson,
+ * Kavan, Sorkine-Hornung 2013, section 3). Summed per priority it also makes objects of equal priority one medium. The running sum
+ * is above zero only if some object holds the point, so a probe may stop at the first sum that decides the question:
+ * enough_at is the priority at or below which the exact winner does not matter. */
+Medium probe_medium(point origin, vector direction, float enough_at, output int holders)
+{
+  float level[PROBE_LEVELS];
+  int sum[PROBE_LEVELS];
+  int levels = 0;
+  Medium winner = air();
+  holders = 0;
+  float t = 0.0;
+  for (int i = 0; i < PROBE_HITS; i++) {
+    if (!trace(origin, direction, "mindist", t))
+      break;
+    float hit = 0.0, self = 0.0;
+    getmessage("trace", "hitdist", hit);
+    t = step_past(hit);
+    getmessage("trace", "hitself", self);
+    if (self > 0.0)
+      continue;
+    int slot = -1;
+    float priority = hit_priority(slot);
+    if (priority >= AIR_PRIORITY || priority > winner.priority)
+      continue;
+    int k = 0;
+    while (k < levels && level[k] != priority)
+      k++;
+    if (k == PROBE_LEVELS)
+      continue;
+    if (k == levels) {
+      level[k] = priority;
+      sum[k] = 0;
+      levels++;
+    }
+    sum[k] += hit_crossing(direction);
+    if (sum[k] > 0 && priority < winner.priority) {
+      winner = hit_medium(priority, slot);
+      if (priority <= enough_at)
+        return winner;
+    }
+    if (priority == winner.priority)
+      holders = sum[k];
+  }
+  return winner;
+}
+
+/* How far a ray from inside a medium runs in it: to the surface where it ends, to a foreign object if those stop it, or
+ * to reach. `holders` is the number of objects of its priority around the origin; a surface of lower precedence
+ * inside the medium does not exist. */
+float medium_extent(
+    point origin, vector direction, Medium m, int holders, float reach, int foreign_stops, output int foreign)
+{
+  int open = holders;
+  float t = 0.0;
+  foreign = 0;
+  for (int i = 0; i < PROBE_HITS; i++) {
+    if (!trace(origin, direction, "mindist", t, "maxdist", reach))
+      break;
+    float hit = 0.0;
+    getmessage("trace", "hitdist", hit);
+    t = step_past(hit);
+    int slot = -1;
+    float priority = hit_priority(slot);
+    if (priority >= AIR_PRIORITY) {
+      if (foreign_stops) {
+        foreign = 1;
+        return hit;
+      }
+    }
+    else if (priority <= m.priority) {
+      int crossing = hit_crossing(direction);
+      if (priority < m.priority) {
+        if (crossing < 0)
+          return hit;
+      }
+      else {
+        open -= crossing;
+        if (open <= 0)
+          return hit;
+      }
+    }
+  }
+  return reach;
+}
