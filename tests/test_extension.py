@@ -1,0 +1,79 @@
+"""The zip that Blender installs."""
+
+import os
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+MODULE = "bl_ext.user_default.nested_dielectric"
+
+USE = f"""
+import sys
+import bpy, addon_utils
+archive = sys.argv[1]
+bpy.ops.extensions.package_install_files(filepath=archive, repo="user_default", enable_on_install=True)
+assert "{MODULE}" in bpy.context.preferences.addons, "not enabled"
+
+from bl_ext.user_default import nested_dielectric as nd
+assert nd.__file__.startswith(bpy.utils.user_resource("EXTENSIONS")), nd.__file__
+for obj in bpy.data.objects:
+    obj.select_set(obj.type == "MESH")
+bpy.ops.nested_dielectric.assign_preset(preset="water")
+cube = bpy.data.objects["Cube"]
+assert nd.get_priority(cube) == 30, nd.get_priority(cube)
+assert nd.new_material("Diamond", ior=2.417).node_tree.nodes["Nested Dielectric"].inputs["IOR"].default_value > 2.4
+assert not addon_utils._extensions_warnings_get().get("{MODULE}"), addon_utils._extensions_warnings_get()
+
+bpy.ops.preferences.addon_disable(module="{MODULE}")
+assert not [name for name in dir(bpy.types) if name.upper().startswith("NESTED_DIELECTRIC")]
+print("all well")
+"""
+
+
+@pytest.fixture(scope="module")
+def archive(tmp_path_factory):
+    """The zip as ``make extension`` builds and validates it.
+
+    -o keeps make from renewing the environment that this test runs in.
+    """
+    folder = tmp_path_factory.mktemp("dist")
+    variables = (f"DIST={folder}", f"PYTHON={sys.executable}")
+    result = subprocess.run(
+        ["make", "-o", ".venv/.installed", "extension", *variables], cwd=ROOT, capture_output=True, text=True
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
+    (path,) = folder.glob("*.zip")
+    return path
+
+
+def test_the_zip_holds_the_extension_and_nothing_else(archive):
+    names = set(zipfile.ZipFile(archive).namelist())
+    sources = {
+        path.relative_to(ROOT).as_posix()
+        for folder, pattern in (("addon", "*.py"), ("osl", "*"), ("presets", "*.toml"))
+        for path in (ROOT / folder).glob(pattern)
+    }
+    top = {"__init__.py", "blender_manifest.toml", "README.md", "LICENSE"}
+    assert names == sources | {name for name in top if (ROOT / name).is_file()}
+
+
+def test_the_extension_and_the_python_package_have_one_version(archive):
+    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text())
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    assert manifest["version"] == project["version"]
+    assert archive.name == f"{manifest['id']}-{manifest['version']}.zip"
+
+
+def test_an_installed_extension_enables_in_a_fresh_profile_and_makes_materials(archive, tmp_path):
+    environment = {**os.environ, "BLENDER_USER_RESOURCES": str(tmp_path / "profile")}
+    result = subprocess.run(
+        [sys.executable, "-c", USE, archive], cwd=tmp_path, env=environment, capture_output=True, text=True
+    )
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert result.stdout.endswith("all well\n")
+    assert result.stderr == ""
