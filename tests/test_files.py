@@ -1,0 +1,73 @@
+"""A saved file renders without the extension."""
+
+import subprocess
+import sys
+import textwrap
+
+import bpy
+import numpy as np
+
+import nested_dielectric as nd
+from scenes import add_camera, add_sphere, new_scene, read_picture, render, set_striped_world
+
+WITHOUT_EXTENSION = """
+import sys
+sys.modules["nested_dielectric"] = None  # any import of it fails
+import bpy
+bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
+bpy.context.scene.render.filepath = sys.argv[2]
+bpy.ops.render.render(write_still=True)
+"""
+
+
+def build_scene() -> None:
+    new_scene(48)
+    set_striped_world()
+    add_camera((0, -5, 0.3), (0, 0, 0), angle=28)
+    tint = {"transmittance": (0.9, 0.5, 0.3), "transmittance_depth": 0.8}
+    add_sphere("Glass", 1.0, nd.new_material("Glass", preset="glass", **tint), 2)
+    add_sphere("Water", 0.7, nd.new_material("Water", preset="water"), 1, (0.5, -0.2, 0.1))
+    add_sphere("Bubble", 0.3, nd.new_material("Bubble", preset="air_bubble"), None, (0.2, -0.1, 0.0))
+
+
+def test_a_saved_file_renders_bit_for_bit_the_same_without_the_extension(tmp_path):
+    build_scene()
+    file, picture = tmp_path / "scene.blend", tmp_path / "farm.exr"
+    bpy.context.scene.cycles.samples = 16
+    expected = render(16)
+    bpy.ops.wm.save_as_mainfile(filepath=str(file))
+    subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(WITHOUT_EXTENSION), str(file), str(picture)], check=True, capture_output=True
+    )
+    assert np.array_equal(read_picture(picture), expected)
+
+
+def test_a_material_made_under_another_engine_renders_the_same():
+    """Cycles compiles scripts by itself only while it is the scene's engine."""
+    build_scene()
+    expected = render(16)
+    new_scene(48)
+    bpy.context.scene.render.engine = "BLENDER_EEVEE"
+    nd.new_material("First")
+    nodes = bpy.data.node_groups["Nested Dielectric"].nodes
+    set_striped_world()
+    bpy.context.scene.render.engine = "CYCLES"
+    add_camera((0, -5, 0.3), (0, 0, 0), angle=28)
+    tint = {"transmittance": (0.9, 0.5, 0.3), "transmittance_depth": 0.8}
+    add_sphere("Glass", 1.0, nd.new_material("Glass", preset="glass", **tint), 2)
+    add_sphere("Water", 0.7, nd.new_material("Water", preset="water"), 1, (0.5, -0.2, 0.1))
+    add_sphere("Bubble", 0.3, nd.new_material("Bubble", preset="air_bubble"), None, (0.2, -0.1, 0.0))
+    assert nodes["Nested Dielectric Shader"].bytecode
+    assert np.array_equal(render(16), expected)
+
+
+def test_the_source_travels_with_the_file_in_one_text():
+    build_scene()
+    text = bpy.data.texts["nested_dielectric.osl"].as_string()
+    assert "#include" not in text
+    assert text.count("struct Medium") == 1
+
+
+def test_materials_of_one_file_share_one_group():
+    build_scene()
+    assert [tree.name for tree in bpy.data.node_groups] == ["Nested Dielectric"]
