@@ -1,0 +1,197 @@
+"""The Python interface: keywords, values, priorities and preparation."""
+
+from pathlib import Path
+
+import bpy
+import pytest
+
+import nested_dielectric as nd
+from nested_dielectric import media, parameters, presets, shader_source
+from scenes import add, add_box, add_sphere, new_scene
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(autouse=True)
+def empty_scene():
+    new_scene()
+
+
+def socket(material: bpy.types.Material, name: str):
+    return material.node_tree.nodes["Nested Dielectric"].inputs[name].default_value
+
+
+def test_keywords_are_socket_names_in_snake_case():
+    assert parameters.BY_KEYWORD["ior"].name == "IOR"
+    assert parameters.BY_KEYWORD["thin_film_thickness"].name == "Thin Film Thickness"
+    assert all(keyword.isidentifier() for keyword in parameters.BY_KEYWORD)
+
+
+def test_a_preset_is_set_first_and_keywords_override_it():
+    material = nd.new_material("Water", preset="water", roughness=0.25)
+    assert socket(material, "IOR") == pytest.approx(1.3334)
+    assert socket(material, "Roughness") == 0.25
+    assert socket(nd.new_material("Heavy", preset="water", ior=1.4), "IOR") == pytest.approx(1.4)
+
+
+@pytest.mark.parametrize("keyword", ["shadow_mode", "distribution"])
+def test_enumerations_are_upper_case_words(keyword):
+    for choice in parameters.BY_KEYWORD[keyword].choices:
+        material = nd.new_material("M", **{keyword: choice.keyword})
+        assert socket(material, parameters.BY_KEYWORD[keyword].name) == choice.name
+    with pytest.raises(nd.ParameterError, match="one of"):
+        nd.new_material("M", **{keyword: "black"})
+
+
+@pytest.mark.parametrize(
+    "keywords, words",
+    [
+        ({"iorr": 1.3}, "unknown parameter 'iorr'; known are"),
+        ({"ior": -1.0}, "outside 0.01 to 100"),
+        ({"ior": float("nan")}, "finite"),
+        ({"ior": "high"}, "a number"),
+        ({"roughness": 2}, "outside 0 to 1"),
+        ({"priority": 1.5}, "whole number"),
+        ({"transmittance": 0.5}, "three numbers"),
+        ({"internal_reflections": "yes"}, "True or False"),
+        ({"emission_at_exits": 1}, "link a shader node"),
+        ({"preset": "wter"}, "unknown preset 'wter'; known are"),
+    ],
+)
+def test_a_wrong_keyword_or_value_is_named_and_nothing_is_made(keywords, words):
+    with pytest.raises(nd.ParameterError, match=words):
+        nd.new_material("M", **keywords)
+    assert not bpy.data.materials
+
+
+def test_a_preset_name_serves_as_a_material_and_is_shared():
+    first, second = add_sphere("A", 1.0), add_sphere("B", 1.0)
+    assert nd.assign(first, "water", priority=3) == nd.assign(second, "water")
+    assert first.active_material == second.active_material
+    assert nd.get_priority(first) == 3
+    assert nd.get_priority(second) == presets.load_preset("water").parameters["priority"]
+
+
+def test_what_cannot_be_a_medium_is_named():
+    with pytest.raises(nd.ParameterError, match="'Lamp' is light"):
+        nd.assign(add("Lamp", bpy.data.lights.new("Lamp", "POINT")), "water")
+    with pytest.raises(nd.ParameterError, match="'Nothing' is empty"):
+        nd.assign(add("Nothing", None), "water")
+    with pytest.raises(nd.ParameterError, match="has no node"):
+        nd.assign(add_sphere("Ball", 1.0), bpy.data.materials.new("Plain"))
+    with pytest.raises(nd.ParameterError, match="assign"):
+        nd.get_priority(add_sphere("Bare", 1.0))
+
+
+def test_an_object_overrides_the_priority_of_its_material_until_told_otherwise():
+    ball = add_sphere("Ball", 1.0, nd.new_material("Water", priority=7))
+    assert nd.get_priority(ball) == 7
+    nd.set_priority(ball, 0)
+    assert nd.get_priority(ball) == 0
+    copy = ball.copy()
+    assert nd.get_priority(copy) == 0
+    nd.set_priority(ball, None)
+    assert nd.get_priority(ball) == 7
+    with pytest.raises(nd.ParameterError, match="outside"):
+        nd.set_priority(ball, -1)
+
+
+def test_priorities_are_plain_custom_properties_that_files_keep(tmp_path):
+    nd.set_priority(add_sphere("Ball", 1.0, nd.new_material("Water")), 42)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "file.blend"))
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "file.blend"))
+    assert bpy.data.objects["Ball"]["nd_priority"] == 42
+
+
+def names() -> list[tuple[str, int]]:
+    return [(obj.name, nd.get_priority(obj)) for obj in media.media(bpy.context.scene)]
+
+
+def test_media_are_listed_in_winning_order_with_those_of_instanced_collections():
+    material = nd.new_material("M")
+    for name, priority in (("C", 3), ("A", 1), ("B", 2)):
+        add_box(name, (0, 0, 0), (1, 1, 1), material, priority)
+    hidden = bpy.data.collections.new("Hidden")
+    bpy.context.scene.collection.objects.unlink(bpy.data.objects["B"])
+    hidden.objects.link(bpy.data.objects["B"])
+    instance = add("Instance", None)
+    instance.instance_type, instance.instance_collection = "COLLECTION", hidden
+    assert names() == [("A", 1), ("B", 2), ("C", 3)]
+
+
+def test_moving_a_medium_exchanges_it_with_the_next_level_and_stops_at_the_ends():
+    material = nd.new_material("M")
+    for name, priority in (("A", 1), ("B", 5), ("C", 5), ("D", 9)):
+        add_box(name, (0, 0, 0), (1, 1, 1), material, priority)
+    scene, objects = bpy.context.scene, bpy.data.objects
+    assert media.move_priority(scene, objects["D"], -1)
+    assert names() == [("A", 1), ("D", 5), ("B", 9), ("C", 9)]
+    assert media.move_priority(scene, objects["C"], -1)
+    assert names() == [("A", 1), ("D", 5), ("C", 9), ("B", 10)]
+    assert not media.move_priority(scene, objects["A"], -1)
+    assert not media.move_priority(scene, objects["B"], +1)
+    assert names() == [("A", 1), ("D", 5), ("C", 9), ("B", 10)]
+
+
+def test_a_move_at_the_highest_numbers_keeps_them_in_range():
+    material = nd.new_material("M")
+    for name, priority in (("A", 999), ("B", 999), ("C", 1000)):
+        add_box(name, (0, 0, 0), (1, 1, 1), material, priority)
+    assert media.move_priority(bpy.context.scene, bpy.data.objects["A"], +1)
+    assert names() == [("B", 0), ("A", 1), ("C", 2)]
+
+
+def test_preparing_says_what_it_changed_and_a_second_time_changes_nothing():
+    scene = bpy.context.scene
+    scene.cycles.shading_system = False
+    scene.cycles.max_bounces = 12
+    scene.cycles.transparent_max_bounces = 1000
+    preparation = nd.prepare(scene)
+    assert "Open Shading Language: False -> True" in str(preparation)
+    assert scene.cycles.max_bounces == 64
+    assert scene.cycles.transparent_max_bounces == 1000
+    assert nd.prepare(scene).changes == ()
+
+
+def test_every_preset_has_a_source_and_loads():
+    assert {"water", "ice", "glass", "air_bubble"} <= set(nd.preset_names())
+    for key in nd.preset_names():
+        preset = presets.load_preset(key)
+        assert preset.source and preset.description
+        nd.new_material(preset.name, preset=key)
+
+
+def test_presets_work_together_without_setting_priorities():
+    """A bubble wins over glass, glass over ice, ice over water."""
+    order = [presets.load_preset(key).parameters["priority"] for key in ("air_bubble", "glass", "ice", "water")]
+    assert order == sorted(set(order))
+
+
+def test_a_broken_preset_file_is_named(tmp_path):
+    (tmp_path / "bad.toml").write_text('name = "Bad"\ndescription = ""\nsource = ""\n[parameters]\niorr = 1.0\n')
+    with pytest.raises(nd.ParameterError, match="bad.toml.*iorr"):
+        presets.load_preset("bad", tmp_path)
+
+
+def test_every_socket_has_its_limits_and_a_description():
+    group = nd.new_material("M").node_tree.nodes["Nested Dielectric"].node_tree
+    sockets = {item.name: item for item in group.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT"}
+    assert list(sockets) == [parameter.name for parameter in parameters.PARAMETERS]
+    for parameter in parameters.PARAMETERS:
+        item = sockets[parameter.name]
+        assert item.description == parameter.description
+        assert item.parent.name == parameter.panel
+        if parameter.kind in ("INT", "FLOAT"):
+            assert (item.min_value, item.max_value) == pytest.approx((parameter.minimum, parameter.maximum))
+
+
+def test_the_shader_takes_exactly_the_tables_parameters():
+    source = shader_source.inlined_source("nested_dielectric.osl")
+    body = source[source.index("shader nested_dielectric(") :]
+    inputs = [line.split("=")[0].split()[-1] for line in body[: body.index("output")].splitlines()[1:] if "=" in line]
+    assert inputs == [parameter.osl_name for parameter in parameters.PARAMETERS] + ["Requests"]
+
+
+def test_the_manual_holds_the_parameter_table():
+    assert parameters.manual_table() in (ROOT / "README.md").read_text(encoding="utf-8")
