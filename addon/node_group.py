@@ -183,7 +183,11 @@ def _menu(tree: bpy.types.NodeTree, source: bpy.types.NodeSocket, parameter: Par
 
 def _requests(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
     """One colour that depends on every attribute neighbours read of an object, so that Cycles exports them."""
-    names = [(PRIORITY_PROPERTY, "OBJECT"), ("material_index", "GEOMETRY")]
+    names = [
+        (PRIORITY_PROPERTY, "OBJECT"),
+        ("material_slots[1].material.pass_index", "OBJECT"),
+        ("material_index", "GEOMETRY"),
+    ]
     names += [
         (f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value', "OBJECT")
         for slot in range(MATERIAL_SLOTS)

@@ -9,6 +9,7 @@ struct Interface {
   Medium to;    /* medium on the other side */
   int from_holders; /* objects of that medium's priority around the point */
   int to_holders;
+  int traced; /* 0 where Cycles cannot trace rays from shaders, so nothing of this is known */
 };
 
 /* Schmidt and Budge, 2002 (Simple nested dielectrics in ray traced images), without their per-ray interface list: the
@@ -18,21 +19,22 @@ struct Interface {
  * just behind it, so of two coincident faces one is valid and one is not whichever is met first. */
 Interface resolve_interface(Medium own)
 {
-  normal outward = backfacing() ? -Ng : Ng;
-  int holders = 0;
-  Medium outer = probe_medium(P, outward, own.priority, holders);
+  Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, own.priority);
+  Medium inner = own;
+  inner.priority = outer.own_priority;
   Interface s;
-  s.valid = own.priority < outer.priority;
+  s.traced = outer.traced;
+  s.valid = inner.priority < outer.medium.priority;
   if (backfacing()) {
-    s.from = own;
-    s.to = outer;
+    s.from = inner;
+    s.to = outer.medium;
     s.from_holders = 1;
-    s.to_holders = holders;
+    s.to_holders = outer.holders;
   }
   else {
-    s.from = outer;
-    s.to = own;
-    s.from_holders = holders;
+    s.from = outer.medium;
+    s.to = inner;
+    s.from_holders = outer.holders;
     s.to_holders = 1;
   }
   return s;

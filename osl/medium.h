@@ -42,43 +42,42 @@ int absorbs(Medium m)
   { SOCKET("0", name), SOCKET("1", name), SOCKET("2", name), SOCKET("3", name), \
     SOCKET("4", name), SOCKET("5", name), SOCKET("6", name), SOCKET("7", name) }
 
-/* Slot of the dielectric that the object hit last by trace() is made of there; -1 if it is no medium. */
-int hit_slot()
+/* Any material in the second slot: an object without one needs no look at the face that was hit. */
+#define SECOND_SLOT "\001object:material_slots[1].material.pass_index"
+
+/* The medium that was hit last by trace() is made of the nested dielectric of the face that was hit. A face with another material, such
+ * as a label on a bottle, closes the object's surface all the same: it counts as the first dielectric of the object.
+ * Returns that slot's priority, or AIR_PRIORITY if the object has no nested dielectric. */
+float hit_slot(output int slot)
 {
   string priorities[MATERIAL_SLOTS] = SOCKETS("Priority");
   float value[4];
   float index = 0.0;
-  getmessage("trace", "material_index", index);
-  int slot = (int)index;
+  if (getmessage("trace", SECOND_SLOT, value) && value[3] > 0.0)
+    getmessage("trace", "material_index", index);
+  slot = (int)index;
   if (slot < MATERIAL_SLOTS && getmessage("trace", priorities[slot], value) && value[3] > 0.0)
-    return slot;
-  /* A label on a bottle is a foreign material on the bottle's closed surface. */
+    return value[0];
   for (slot = 0; slot < MATERIAL_SLOTS; slot++) {
     if (getmessage("trace", priorities[slot], value) && value[3] > 0.0)
-      return slot;
+      return value[0];
   }
-  return -1;
+  slot = -1;
+  return AIR_PRIORITY;
 }
 
 /* Priority of the medium that was hit last by trace(); AIR_PRIORITY if the object is foreign. The object's own
- * value, where it has one, overrides the material's. */
+ * value, where it has one, overrides the material's; the slot is then not looked for yet and -1. */
 float hit_priority(output int slot)
 {
-  string priorities[MATERIAL_SLOTS] = SOCKETS("Priority");
   float value[4];
   slot = -1;
   if (!getmessage("trace", OBJECT_PRIORITY, value))
     return AIR_PRIORITY; /* no material on it asks for the property: not a medium */
-  if (value[3] > 0.0)
-    return value[0];
-  slot = hit_slot();
-  if (slot < 0)
-    return AIR_PRIORITY;
-  getmessage("trace", priorities[slot], value);
-  return value[0];
+  return (value[3] > 0.0) ? value[0] : hit_slot(slot);
 }
 
-/* The rest of what the medium that was hit last is made of. */
+/* All of the medium that was hit last, of which hit_priority() told the priority and the slot. */
 Medium hit_medium(float priority, int known_slot)
 {
   string iors[MATERIAL_SLOTS] = SOCKETS("IOR");
@@ -86,7 +85,9 @@ Medium hit_medium(float priority, int known_slot)
   string depths[MATERIAL_SLOTS] = SOCKETS("Transmittance Depth");
   Medium m = air();
   m.priority = priority;
-  int slot = (known_slot < 0) ? hit_slot() : known_slot;
+  int slot = known_slot;
+  if (slot < 0)
+    hit_slot(slot);
   if (slot >= 0) {
     float value[4];
     getmessage("trace", iors[slot], value);

@@ -36,34 +36,57 @@ int hit_crossing(vector direction)
   return (side < 0.0) ? 1 : -1;
 }
 
-/* The medium that fills the point just off P in the given direction, P's own object left out, with the number of objects
- * of its priority that hold the point.
+/* What lies around a surface of one medium. */
+struct Surroundings {
+  Medium medium;      /* the winner among the other media */
+  int holders;        /* objects of its priority that hold the point */
+  float own_priority; /* of the surface's object */
+  int traced;         /* 0 where Cycles cannot trace rays from shaders */
+};
+
+/* The media that fill the point just off P in the given direction, P's own object left out.
  *
  * The winding number of a closed surface about a point is the sum of the signed crossings along any ray from it (Jacobson,
  * Kavan, Sorkine-Hornung 2013, section 3). Summed per priority it also makes objects of equal priority one medium. The running sum
- * is above zero only if some object holds the point, so a probe may stop at the first sum that decides the question:
- * enough_at is the priority at or below which the exact winner does not matter. */
-Medium probe_medium(point origin, vector direction, float enough_at, output int holders)
+ * is above zero only if some object holds the point, so a probe may stop at the first sum that decides that the surface's own
+ * medium does not win. */
+Surroundings probe_surroundings(point origin, vector direction, float material_priority)
 {
   float level[PROBE_LEVELS];
   int sum[PROBE_LEVELS];
   int levels = 0;
-  Medium winner = air();
-  holders = 0;
+  int met_medium = 0;
+  Surroundings s;
+  s.medium = air();
+  s.holders = 0;
+  s.own_priority = material_priority;
+  s.traced = 1;
   float t = 0.0;
   for (int i = 0; i < PROBE_HITS; i++) {
-    if (!trace(origin, direction, "mindist", t))
+    if (!trace(origin, direction, "mindist", t)) {
+      /* On the CPU a ray leaves its record even if it met nothing. */
+      int hit = 0;
+      if (i == 0)
+        s.traced = getmessage("trace", "hit", hit);
       break;
-    float hit = 0.0, self = 0.0;
-    getmessage("trace", "hitdist", hit);
-    t = step_past(hit);
+    }
+    float distance = 0.0, self = 0.0;
+    getmessage("trace", "hitdist", distance);
+    t = step_past(distance);
     getmessage("trace", "hitself", self);
     if (self > 0.0)
       continue;
     int slot = -1;
     float priority = hit_priority(slot);
-    if (priority >= AIR_PRIORITY || priority > winner.priority)
+    if (priority >= AIR_PRIORITY || priority > s.medium.priority)
       continue;
+    if (!met_medium) {
+      met_medium = 1;
+      float own[4] = {0.0, 0.0, 0.0, 0.0};
+      getattribute(OBJECT_PRIORITY, own);
+      if (own[3] > 0.0)
+        s.own_priority = own[0];
+    }
     int k = 0;
     while (k < levels && level[k] != priority)
       k++;
@@ -75,15 +98,15 @@ Medium probe_medium(point origin, vector direction, float enough_at, output int 
       levels++;
     }
     sum[k] += hit_crossing(direction);
-    if (sum[k] > 0 && priority < winner.priority) {
-      winner = hit_medium(priority, slot);
-      if (priority <= enough_at)
-        return winner;
+    if (sum[k] > 0 && priority < s.medium.priority) {
+      s.medium = hit_medium(priority, slot);
+      if (priority <= s.own_priority)
+        return s;
     }
-    if (priority == winner.priority)
-      holders = sum[k];
+    if (priority == s.medium.priority)
+      s.holders = sum[k];
   }
-  return winner;
+  return s;
 }
 
 /* How far a ray from inside a medium runs in it: to the surface where it ends, to a foreign object if those stop it, or

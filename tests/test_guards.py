@@ -78,9 +78,9 @@ def test_cycles_without_osl_shows_magenta_not_a_wrong_picture():
 
 
 def test_where_the_shader_cannot_trace_rays_it_shows_magenta(monkeypatch):
-    """On a GPU the object's name is unknown to shaders; a name that no device knows stands for one here."""
+    """On a GPU trace() meets nothing and leaves no record; a message that no device knows stands for one here."""
     source = node_group.inlined_source
-    monkeypatch.setattr(node_group, "inlined_source", lambda name: source(name).replace("geom:name", "geom:no_such"))
+    monkeypatch.setattr(node_group, "inlined_source", lambda name: source(name).replace('"hit", hit', '"no such", hit'))
     ball_in_furnace()
     red, green, blue = render(16).mean(axis=(0, 1))
     assert green < 0.01 and red > 0.5 and blue > 0.5
