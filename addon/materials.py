@@ -36,14 +36,15 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
     node.node_tree = group
     node.name = GROUP_NAME
     node.width = 260.0
-    for target, socket, height in (
-        ("CYCLES", node_group.CYCLES_OUTPUT, 0.0),
-        ("EEVEE", node_group.PREVIEW_OUTPUT, -160.0),
+    for target, height, sockets in (
+        ("CYCLES", 0.0, {"Surface": node_group.CYCLES_OUTPUT, "Volume": node_group.VOLUME_OUTPUT}),
+        ("EEVEE", -160.0, {"Surface": node_group.PREVIEW_OUTPUT}),
     ):
         output = tree.nodes.new("ShaderNodeOutputMaterial")
         output.target = target
         output.location = (340.0, height)
-        tree.links.new(node.outputs[socket], output.inputs["Surface"])
+        for theirs, ours in sockets.items():
+            tree.links.new(node.outputs[ours], output.inputs[theirs])
     for parameter, value in values.items():
         set_parameter(node, parameter, value)
     material.use_raytrace_refraction = True

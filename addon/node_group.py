@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
+from math import e
 from pathlib import Path
 
 import bpy
@@ -17,6 +18,7 @@ MATERIAL_SLOTS = 8
 """As in osl/medium.h: slots of an object in which neighbours look for its dielectric."""
 
 CYCLES_OUTPUT = "Surface"
+VOLUME_OUTPUT = "Volume"
 PREVIEW_OUTPUT = "Preview"
 SOURCE_HASH = "nd_source"
 
@@ -63,6 +65,10 @@ def _shader_text(source: str) -> bpy.types.Text:
 def _add_sockets(tree: bpy.types.NodeTree) -> None:
     interface = tree.interface
     interface.new_socket(CYCLES_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="The dielectric, for Cycles")
+    interface.new_socket(
+        VOLUME_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader",
+        description="Absorption of light that comes straight from the camera or from an object inside the medium",
+    )
     interface.new_socket(PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="A stand-in for EEVEE")
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
     for parameter in PARAMETERS:
@@ -119,6 +125,8 @@ def _add_nodes(tree: bpy.types.NodeTree, text: bpy.types.Text, bytecode: str) ->
     links.new(script.outputs["BSDF"], running.inputs[2])
     links.new(running.outputs[0], outputs.inputs[CYCLES_OUTPUT])
 
+    links.new(_absorption(tree, inputs), outputs.inputs[VOLUME_OUTPUT])
+
     preview = nodes.new("ShaderNodeBsdfPrincipled")
     preview.inputs["Transmission Weight"].default_value = 1.0
     for ours, theirs in (("Transmittance", "Base Color"), ("Roughness", "Roughness"), ("IOR", "IOR")):
@@ -163,6 +171,48 @@ def compiled(source: str) -> str:
         if not (_cycles.with_osl and _cycles.osl_compile(str(source_path), str(bytecode_path))):
             raise UnsupportedError("this Blender compiles no OSL; use the build from blender.org or the bpy wheel")
         return bytecode_path.read_text(encoding="utf-8")
+
+
+def _absorption(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
+    """Absorption of rays that start at the camera or at a foreign object, whose way may meet no surface of a medium.
+
+    All other rays are charged by the shader, which knows who wins. Where nothing is absorbed the mix is folded away and
+    Cycles sees no volume.
+    """
+    nodes, links = tree.nodes, tree.links
+
+    def math(operation: str, *operands: bpy.types.NodeSocket | float) -> bpy.types.NodeSocket:
+        node = nodes.new("ShaderNodeMath")
+        node.operation = operation
+        for socket, operand in zip(node.inputs, operands):
+            if isinstance(operand, float):
+                socket.default_value = operand
+            else:
+                links.new(operand, socket)
+        return node.outputs[0]
+
+    channels = nodes.new("ShaderNodeSeparateColor")
+    links.new(inputs.outputs["Transmittance"], channels.inputs[0])
+    depth = inputs.outputs["Transmittance Depth"]
+    coefficients = nodes.new("ShaderNodeCombineXYZ")
+    for channel, coefficient in zip(channels.outputs, coefficients.inputs):
+        decay = math("MULTIPLY", math("LOGARITHM", math("MAXIMUM", channel, 1e-6), e), -1.0)
+        links.new(math("DIVIDE", decay, depth), coefficient)
+
+    path = nodes.new("ShaderNodeLightPath")
+    charged = nodes.new("ShaderNodeVectorMath")
+    charged.operation = "SCALE"
+    links.new(coefficients.outputs[0], charged.inputs[0])
+    links.new(math("ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"]), charged.inputs["Scale"])
+    volume = nodes.new("ShaderNodeVolumeCoefficients")
+    volume.inputs["Scatter Coefficients"].default_value = (0.0, 0.0, 0.0)
+    links.new(charged.outputs[0], volume.inputs["Absorption Coefficients"])
+
+    least = math("MINIMUM", math("MINIMUM", channels.outputs[0], channels.outputs[1]), channels.outputs[2])
+    absorbs = nodes.new("ShaderNodeMixShader")
+    links.new(math("MULTIPLY", math("LESS_THAN", least, 1.0), math("GREATER_THAN", depth, 0.0)), absorbs.inputs[0])
+    links.new(volume.outputs[0], absorbs.inputs[2])
+    return absorbs.outputs[0]
 
 
 def _menu(tree: bpy.types.NodeTree, source: bpy.types.NodeSocket, parameter: Parameter) -> bpy.types.NodeSocket:
@@ -218,6 +268,11 @@ def _arrange(tree: bpy.types.NodeTree) -> None:
         "ShaderNodeBsdfDiffuse": 2,
         "ShaderNodeBsdfPrincipled": 2,
         "ShaderNodeScript": 2,
+        "ShaderNodeSeparateColor": 1,
+        "ShaderNodeLightPath": 1,
+        "ShaderNodeMath": 2,
+        "ShaderNodeCombineXYZ": 3,
+        "ShaderNodeVolumeCoefficients": 3,
         "ShaderNodeMixShader": 3,
         "NodeGroupOutput": 4,
     }

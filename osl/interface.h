@@ -21,7 +21,7 @@ Interface resolve_interface(Medium own)
 {
   Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, own.priority);
   Medium inner = own;
-  inner.priority = outer.own_priority;
+  inner.priority = absorbs(own) ? shaded_priority(own.priority) : outer.own_priority;
   Interface s;
   s.traced = outer.traced;
   s.valid = inner.priority < outer.medium.priority;

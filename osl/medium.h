@@ -42,6 +42,14 @@ int absorbs(Medium m)
   { SOCKET("0", name), SOCKET("1", name), SOCKET("2", name), SOCKET("3", name), \
     SOCKET("4", name), SOCKET("5", name), SOCKET("6", name), SOCKET("7", name) }
 
+/* The priority of the object that is shaded: its own value, or else its material's. */
+float shaded_priority(float material_priority)
+{
+  float own[4] = {0.0, 0.0, 0.0, 0.0};
+  getattribute(OBJECT_PRIORITY, own);
+  return (own[3] > 0.0) ? own[0] : material_priority;
+}
+
 /* Any material in the second slot: an object without one needs no look at the face that was hit. */
 #define SECOND_SLOT "\001object:material_slots[1].material.pass_index"
 

@@ -40,7 +40,7 @@ int hit_crossing(vector direction)
 struct Surroundings {
   Medium medium;      /* the winner among the other media */
   int holders;        /* objects of its priority that hold the point */
-  float own_priority; /* of the surface's object */
+  float own_priority; /* of the surface's object; the material's if no other medium was met */
   int traced;         /* 0 where Cycles cannot trace rays from shaders */
 };
 
@@ -82,10 +82,7 @@ Surroundings probe_surroundings(point origin, vector direction, float material_p
       continue;
     if (!met_medium) {
       met_medium = 1;
-      float own[4] = {0.0, 0.0, 0.0, 0.0};
-      getattribute(OBJECT_PRIORITY, own);
-      if (own[3] > 0.0)
-        s.own_priority = own[0];
+      s.own_priority = shaded_priority(material_priority);
     }
     int k = 0;
     while (k < levels && level[k] != priority)

@@ -137,7 +137,7 @@ def add(name: str, data: bpy.types.ID | None, location=(0.0, 0.0, 0.0)) -> bpy.t
 def add_camera(location, target, width: float | None = None, angle: float = 40.0) -> bpy.types.Object:
     """A camera that looks at a target: orthographic if it has a width, else with that field of view in degrees."""
     data = bpy.data.cameras.new("Camera")
-    data.clip_start = 1e-4
+    data.clip_start = 1e-6
     if width is not None:
         data.type = "ORTHO"
         data.ortho_scale = width

@@ -179,6 +179,40 @@ def test_an_object_in_the_drink_is_lit_through_what_lies_above_it():
     assert_mean(render(64), (1 - fresnel(0, 1, 1.33)) * beer_lambert(2 * THICKNESS))
 
 
+def test_a_camera_in_the_drink_sees_what_the_way_leaves():
+    """Straight at an object in the same medium, and out through the surface."""
+    new_scene(16)
+    set_half_world(2, -1)
+    water = nd.new_material("Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False)
+    add_box("Water", (-10, -10, -1.1), (10, 10, 10), water)
+    x, y, _ = AIM
+    add_camera((x, y, 0), (x, y, -1), width=0.01)
+    assert_mean(render(256), (1 - fresnel(0, 1.33, 1)) * beer_lambert(1.1))
+    add_plane("Card", 4, (0, 0, -THICKNESS), (0, 0, 1), emission())
+    assert_mean(render(16), beer_lambert(THICKNESS))
+
+
+def test_light_from_one_object_in_the_drink_to_another_is_absorbed_on_its_way():
+    """A white floor under a glowing ceiling that is large, so every ray from the floor meets it; seen from just above the floor."""
+    new_scene(16)
+    set_world((0, 0, 0))
+    height = 0.5
+    water = nd.new_material("Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH)
+    add_box("Water", (-300, -300, -1), (300, 300, 2), water)
+    add_plane("Floor", 400, (0, 0, 0), (0, 0, 1), diffuse())
+    glow = emission()
+    glow.cycles.emission_sampling = "NONE"
+    add_plane("Ceiling", 400, (0, 0, height), (0, 0, -1), glow)
+    bpy.context.scene.cycles.diffuse_bounces = 1
+    x, y, _ = AIM
+    add_camera((x, y, 0.001), (x, y, 0), width=0.0005)
+    # Mean over the cosine lobe of T^(height / cos): the exponential integral 2 E3(sigma height).
+    cosines = (np.arange(200000) + 0.5) / 200000
+    sigma = -np.log(TINT) / DEPTH
+    expected = [np.mean(2 * cosines * np.exp(-value * height / cosines)) for value in sigma]
+    assert_mean(render(1024), np.array(expected) * beer_lambert(0.001))
+
+
 SHADOW_ANGLE = 30.0
 
 
