@@ -12,8 +12,8 @@ from mathutils.bvhtree import BVHTree
 from . import meshes
 from .materials import dielectric_node, dielectrics, medium_material
 from .media import get_priority, media
-from .node_group import MATERIAL_SLOTS
-from .parameters import NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
+from .node_group import MATERIAL_SLOTS, SOURCE_HASH
+from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
 
 
 @dataclass(frozen=True)
@@ -39,14 +39,33 @@ class _Shape:
 
 def find_problems(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> list[Problem]:
     """Look at every medium of a scene as it is evaluated now; change nothing."""
-    depsgraph = depsgraph or bpy.context.evaluated_depsgraph_get()
+    depsgraph = depsgraph or _depsgraph(scene)
     objects = media(scene)
     shapes = [shape for obj in objects if (shape := _shape(obj, depsgraph)) is not None]
-    problems = [problem for obj in objects for problem in _object_problems(obj)]
+    problems = [problem for obj in scene.objects for problem in _node_problems(obj)]
+    problems += [problem for obj in objects for problem in _object_problems(obj)]
     for shape in shapes:
         problems += _mesh_problems(shape)
     problems += _overlap_problems(shapes)
     return problems
+
+
+def _depsgraph(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
+    """The evaluated state of a scene, which need not be the one in the window."""
+    layer = scene.view_layers[0]
+    layer.update()
+    return layer.depsgraph
+
+
+def _node_problems(obj: bpy.types.Object) -> list[Problem]:
+    """A group node by another name renders, but its neighbours take the object for a foreign one."""
+    return [
+        Problem(obj.name, f"has a nested dielectric in material {slot.material.name!r} whose node is named {node.name!r}", f"rename the node to {GROUP_NAME!r}")
+        for slot in obj.material_slots
+        if slot.material is not None and dielectric_node(slot.material) is None
+        for node in slot.material.node_tree.nodes
+        if node.type == "GROUP" and node.node_tree is not None and SOURCE_HASH in node.node_tree
+    ]
 
 
 def _shape(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Shape | None:
@@ -118,6 +137,7 @@ def _overlap_problems(shapes: list[_Shape]) -> list[Problem]:
     """Objects of equal priority that overlap are one medium; that they should be two different ones cannot be meant."""
     problems = []
     boxes = [(shape.vertices.min(axis=0), shape.vertices.max(axis=0)) if len(shape.vertices) else None for shape in shapes]
+    media_of = [(get_priority(shape.obj), _signature(shape.obj)) for shape in shapes]
     trees: dict[int, BVHTree] = {}
 
     def tree(index: int) -> BVHTree:
@@ -127,13 +147,12 @@ def _overlap_problems(shapes: list[_Shape]) -> list[Problem]:
         return trees[index]
 
     for i, j in combinations(range(len(shapes)), 2):
-        a, b = shapes[i].obj, shapes[j].obj
-        if get_priority(a) != get_priority(b) or _signature(a) == _signature(b) or boxes[i] is None or boxes[j] is None:
+        (priority, medium), (other_priority, other_medium) = media_of[i], media_of[j]
+        if priority != other_priority or medium == other_medium or boxes[i] is None or boxes[j] is None:
             continue
         if meshes.boxes_overlap(*boxes[i], *boxes[j]) and tree(i).overlap(tree(j)):
+            a, b = shapes[i].obj.name, shapes[j].obj.name
             problems.append(
-                Problem(a.name, f"overlaps {b.name!r} with the same priority {get_priority(a)} and another medium", "give the one that should win the lower priority")
+                Problem(a, f"overlaps {b!r} with the same priority {priority} and another medium", "give the one that should win the lower priority")
             )
     return problems
-
-

@@ -47,7 +47,6 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
             tree.links.new(node.outputs[ours], output.inputs[theirs])
     for parameter, value in values.items():
         set_parameter(node, parameter, value)
-    material.use_raytrace_refraction = True
     material.use_transparent_shadow = True
     material.diffuse_color = (*node.inputs["Transmittance"].default_value[:3], 0.3)
     if description:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
+from functools import partial
 from math import e
 from pathlib import Path
 
@@ -21,6 +22,9 @@ CYCLES_OUTPUT = "Surface"
 VOLUME_OUTPUT = "Volume"
 PREVIEW_OUTPUT = "Preview"
 SOURCE_HASH = "nd_source"
+
+LEAST_PREVIEW_IOR = 1.2
+"""Keeps bubbles, whose index is that of air, in sight in EEVEE."""
 
 _SOCKET_TYPES = {
     "INT": "NodeSocketInt",
@@ -127,11 +131,7 @@ def _add_nodes(tree: bpy.types.NodeTree, text: bpy.types.Text, bytecode: str) ->
 
     links.new(_absorption(tree, inputs), outputs.inputs[VOLUME_OUTPUT])
 
-    preview = nodes.new("ShaderNodeBsdfPrincipled")
-    preview.inputs["Transmission Weight"].default_value = 1.0
-    for ours, theirs in (("Transmittance", "Base Color"), ("Roughness", "Roughness"), ("IOR", "IOR")):
-        links.new(inputs.outputs[ours], preview.inputs[theirs])
-    links.new(preview.outputs[0], outputs.inputs[PREVIEW_OUTPUT])
+    links.new(_preview(tree, inputs), outputs.inputs[PREVIEW_OUTPUT])
     _arrange(tree)
 
 
@@ -173,6 +173,42 @@ def compiled(source: str) -> str:
         return bytecode_path.read_text(encoding="utf-8")
 
 
+def _math(tree: bpy.types.NodeTree, operation: str, *operands: bpy.types.NodeSocket | float) -> bpy.types.NodeSocket:
+    """The result of a Math node on sockets and numbers."""
+    node = tree.nodes.new("ShaderNodeMath")
+    node.operation = operation
+    for socket, operand in zip(node.inputs, operands):
+        if isinstance(operand, float):
+            socket.default_value = operand
+        else:
+            tree.links.new(operand, socket)
+    return node.outputs[0]
+
+
+def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
+    """A look for EEVEE: clear, with reflections towards the edges, so that what stands in a medium stays in sight.
+
+    EEVEE's own refraction shows no second refracting object through the first. The reflectance is that of Schlick (1994), the same
+    from inside as from outside: total reflection would hide what lies behind.
+    """
+    nodes, links = tree.nodes, tree.links
+    math = partial(_math, tree)
+    ior = math("MAXIMUM", inputs.outputs["IOR"], LEAST_PREVIEW_IOR)
+    normal_reflectance = math("POWER", math("DIVIDE", math("SUBTRACT", ior, 1.0), math("ADD", ior, 1.0)), 2.0)
+    edge = math("POWER", nodes.new("ShaderNodeLayerWeight").outputs["Facing"], 5.0)
+    reflectance = math("MULTIPLY_ADD", edge, math("SUBTRACT", 1.0, normal_reflectance), normal_reflectance)
+    clear = nodes.new("ShaderNodeBsdfTransparent")
+    links.new(inputs.outputs["Transmittance"], clear.inputs["Color"])
+    gloss = nodes.new("ShaderNodeBsdfAnisotropic")
+    gloss.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    links.new(inputs.outputs["Roughness"], gloss.inputs["Roughness"])
+    mix = nodes.new("ShaderNodeMixShader")
+    links.new(reflectance, mix.inputs[0])
+    links.new(clear.outputs[0], mix.inputs[1])
+    links.new(gloss.outputs[0], mix.inputs[2])
+    return mix.outputs[0]
+
+
 def _absorption(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
     """Absorption of rays that start at the camera or at a foreign object, whose way may meet no surface of a medium.
 
@@ -181,16 +217,7 @@ def _absorption(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.N
     """
     nodes, links = tree.nodes, tree.links
 
-    def math(operation: str, *operands: bpy.types.NodeSocket | float) -> bpy.types.NodeSocket:
-        node = nodes.new("ShaderNodeMath")
-        node.operation = operation
-        for socket, operand in zip(node.inputs, operands):
-            if isinstance(operand, float):
-                socket.default_value = operand
-            else:
-                links.new(operand, socket)
-        return node.outputs[0]
-
+    math = partial(_math, tree)
     channels = nodes.new("ShaderNodeSeparateColor")
     links.new(inputs.outputs["Transmittance"], channels.inputs[0])
     depth = inputs.outputs["Transmittance Depth"]
@@ -266,7 +293,9 @@ def _arrange(tree: bpy.types.NodeTree) -> None:
         "ShaderNodeVectorMath": -1,
         "GeometryNodeMenuSwitch": 1,
         "ShaderNodeBsdfDiffuse": 2,
-        "ShaderNodeBsdfPrincipled": 2,
+        "ShaderNodeLayerWeight": 1,
+        "ShaderNodeBsdfTransparent": 2,
+        "ShaderNodeBsdfAnisotropic": 2,
         "ShaderNodeScript": 2,
         "ShaderNodeSeparateColor": 1,
         "ShaderNodeLightPath": 1,

@@ -1,6 +1,7 @@
 """What cannot render is said in one clear line, and never shown as a wrong picture."""
 
-import bpy
+import bpy  # before bmesh, which lives inside it
+import bmesh  # isort: skip
 import numpy as np
 import pytest
 
@@ -103,8 +104,6 @@ def test_an_open_mesh_is_named_with_the_remedy():
     new_scene()
 
     def bowl(bm):
-        import bmesh
-
         bmesh.ops.create_cube(bm, size=1.0)
         bm.faces.ensure_lookup_table()
         bmesh.ops.delete(bm, geom=[bm.faces[0]], context="FACES_ONLY")
@@ -144,12 +143,30 @@ def test_a_link_that_neighbours_cannot_follow_is_named():
     assert "a link into 'IOR'" in problems() and "unlink it" in problems()
 
 
+def test_a_renamed_node_is_named():
+    new_scene()
+    material = nd.new_material("Water", preset="water")
+    add_sphere("Ball", 1.0, material)
+    material.node_tree.nodes["Nested Dielectric"].name = "Renamed"
+    assert "'Ball'" in problems() and "rename the node to 'Nested Dielectric'" in problems()
+
+
+def test_a_scene_that_is_not_in_the_window_is_looked_at_as_evaluated():
+    new_scene()
+    other = bpy.data.scenes.new("Other")
+    ball = add_sphere("Ball", 1.0, nd.new_material("Water", preset="water"))
+    ball.modifiers.new("Open", "BUILD").frame_duration = 1e4
+    bpy.context.scene.collection.objects.unlink(ball)
+    other.collection.objects.link(ball)
+    assert any("'Ball'" in str(problem) for problem in find_problems(other))
+
+
 def test_an_open_mesh_renders_without_nan_or_gain():
     new_scene(24)
     set_world()
     add_camera((3, -4, 3), (0, 0, 0), angle=30)
     tint = {"transmittance": (0.9, 0.5, 0.3), "transmittance_depth": 0.8}
-    add_mesh("Sheet", lambda bm: __import__("bmesh").ops.create_grid(bm, x_segments=4, y_segments=4, size=1.0), nd.new_material("Sheet", ior=1.33, **tint), 2)
+    add_mesh("Sheet", lambda bm: bmesh.ops.create_grid(bm, x_segments=4, y_segments=4, size=1.0), nd.new_material("Sheet", ior=1.33, **tint), 2)
     add_box("Ice", (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5), nd.new_material("Ice", ior=1.31, **tint), 1)
     picture = render(16)
     assert np.isfinite(picture).all() and picture.max() <= 1.0 + 1e-5
