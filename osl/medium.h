@@ -63,10 +63,8 @@ float hit_slot(output int slot)
   float index = 0.0;
   if (getmessage("trace", SECOND_SLOT, value) && value[3] > 0.0)
     getmessage("trace", "material_index", index);
-  slot = (int)index;
-  if (slot < MATERIAL_SLOTS && getmessage("trace", priorities[slot], value) && value[3] > 0.0)
-    return value[0];
-  for (slot = 0; slot < MATERIAL_SLOTS; slot++) {
+  for (int i = -1; i < MATERIAL_SLOTS; i++) {
+    slot = (i < 0) ? min((int)index, MATERIAL_SLOTS - 1) : i;
     if (getmessage("trace", priorities[slot], value) && value[3] > 0.0)
       return value[0];
   }
