@@ -60,7 +60,11 @@ def _depsgraph(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
 def _node_problems(obj: bpy.types.Object) -> list[Problem]:
     """A group node by another name renders, but its neighbours take the object for a foreign one."""
     return [
-        Problem(obj.name, f"has a nested dielectric in material {slot.material.name!r} whose node is named {node.name!r}", f"rename the node to {GROUP_NAME!r}")
+        Problem(
+            obj.name,
+            f"has a nested dielectric in material {slot.material.name!r} whose node is named {node.name!r}",
+            f"rename the node to {GROUP_NAME!r}",
+        )
         for slot in obj.material_slots
         if slot.material is not None and dielectric_node(slot.material) is None
         for node in slot.material.node_tree.nodes
@@ -96,17 +100,31 @@ def _object_problems(obj: bpy.types.Object) -> list[Problem]:
     problems = []
     value = obj.get(PRIORITY_PROPERTY)
     if value is not None and not isinstance(value, int):
-        problems.append(Problem(obj.name, f"has the custom property {PRIORITY_PROPERTY!r} with no whole number in it", "delete it, or set its priority again"))
+        problems.append(
+            Problem(
+                obj.name,
+                f"has the custom property {PRIORITY_PROPERTY!r} with no whole number in it",
+                "delete it, or set its priority again",
+            )
+        )
     for slot, material in dielectrics(obj):
         if slot >= MATERIAL_SLOTS:
             problems.append(
-                Problem(obj.name, f"has a nested dielectric in slot {slot + 1}, where its neighbours do not look", f"move it to one of the first {MATERIAL_SLOTS} slots")
+                Problem(
+                    obj.name,
+                    f"has a nested dielectric in slot {slot + 1}, where its neighbours do not look",
+                    f"move it to one of the first {MATERIAL_SLOTS} slots",
+                )
             )
         node = dielectric_node(material)
         for name in NEIGHBOUR_PARAMETERS:
             if node.inputs[name].is_linked:
                 problems.append(
-                    Problem(obj.name, f"has a link into {name!r} of material {material.name!r}, which the media it touches cannot follow", "unlink it; set, keyframe or drive the value itself")
+                    Problem(
+                        obj.name,
+                        f"has a link into {name!r} of material {material.name!r}, which its neighbours cannot follow",
+                        "unlink it; set, keyframe or drive the value itself",
+                    )
                 )
     return problems
 
@@ -116,12 +134,28 @@ def _mesh_problems(shape: _Shape) -> list[Problem]:
     if len(shape.triangles) == 0:
         return [Problem(name, "has no faces", "give it a closed mesh, or another material")]
     if not np.isfinite(shape.vertices).all():
-        return [Problem(name, "has coordinates that are not numbers", "remove those vertices, or the modifier that makes them")]
+        return [
+            Problem(
+                name, "has coordinates that are not numbers", "remove those vertices, or the modifier that makes them"
+            )
+        ]
     edges = meshes.open_edge_count(shape.triangles)
     if edges:
-        return [Problem(name, f"is not closed or its faces are turned against each other ({edges} edges)", "close it (Mesh > Clean Up > Fill Holes, or a Solidify modifier) and recalculate its normals")]
+        return [
+            Problem(
+                name,
+                f"is not closed or its faces are turned against each other ({edges} edges)",
+                "close it (Mesh > Clean Up > Fill Holes, or a Solidify modifier) and recalculate its normals",
+            )
+        ]
     if meshes.signed_volume(shape.vertices, shape.triangles) < 0.0:
-        return [Problem(name, "has its normals pointing inwards", "recalculate them in Edit Mode (Mesh > Normals > Recalculate Outside)")]
+        return [
+            Problem(
+                name,
+                "has its normals pointing inwards",
+                "recalculate them in Edit Mode (Mesh > Normals > Recalculate Outside)",
+            )
+        ]
     return []
 
 
@@ -136,7 +170,9 @@ def _signature(obj: bpy.types.Object) -> tuple:
 def _overlap_problems(shapes: list[_Shape]) -> list[Problem]:
     """Objects of equal priority that overlap are one medium; that they should be two different ones cannot be meant."""
     problems = []
-    boxes = [(shape.vertices.min(axis=0), shape.vertices.max(axis=0)) if len(shape.vertices) else None for shape in shapes]
+    boxes = [
+        (shape.vertices.min(axis=0), shape.vertices.max(axis=0)) if len(shape.vertices) else None for shape in shapes
+    ]
     media_of = [(get_priority(shape.obj), _signature(shape.obj)) for shape in shapes]
     trees: dict[int, BVHTree] = {}
 
@@ -153,6 +189,10 @@ def _overlap_problems(shapes: list[_Shape]) -> list[Problem]:
         if meshes.boxes_overlap(*boxes[i], *boxes[j]) and tree(i).overlap(tree(j)):
             a, b = shapes[i].obj.name, shapes[j].obj.name
             problems.append(
-                Problem(a, f"overlaps {b!r} with the same priority {priority} and another medium", "give the one that should win the lower priority")
+                Problem(
+                    a,
+                    f"overlaps {b!r} with the same priority {priority} and another medium",
+                    "give the one that should win the lower priority",
+                )
             )
     return problems

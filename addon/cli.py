@@ -52,19 +52,27 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     demo = commands.add_parser("demo", help="model the glass of iced water and render it", allow_abbrev=False)
-    demo.add_argument("-o", "--output", type=Path, default=DEMO_OUTPUT, help=f"picture to write (default: {DEMO_OUTPUT})")
+    demo.add_argument(
+        "-o", "--output", type=Path, default=DEMO_OUTPUT, help=f"picture to write (default: {DEMO_OUTPUT})"
+    )
     demo.add_argument("--samples", type=_positive, help="samples per pixel")
     demo.add_argument("--save", type=Path, metavar="FILE.blend", help="also save the scene")
     demo.set_defaults(run=_demo)
 
-    render = commands.add_parser("render", help="prepare a .blend in memory and render a frame of it", allow_abbrev=False)
+    render = commands.add_parser(
+        "render", help="prepare a .blend in memory and render a frame of it", allow_abbrev=False
+    )
     _add_file(render)
-    render.add_argument("-o", "--output", type=Path, required=True, help="picture to write; its ending chooses the format")
+    render.add_argument(
+        "-o", "--output", type=Path, required=True, help="picture to write; its ending chooses the format"
+    )
     render.add_argument("--samples", type=_positive, help="samples per pixel (default: the scene's)")
     render.add_argument("--frame", type=int, help="frame to render (default: the current one)")
     render.set_defaults(run=_render)
 
-    preparation = commands.add_parser("prepare", help="set what a .blend needs, list problems, and save it", allow_abbrev=False)
+    preparation = commands.add_parser(
+        "prepare", help="set what a .blend needs, list problems, and save it", allow_abbrev=False
+    )
     _add_file(preparation)
     preparation.set_defaults(run=_prepare)
 
@@ -74,7 +82,9 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_file(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, nargs="?", metavar="FILE", help="the .blend (default: the one Blender has open)")
+    parser.add_argument(
+        "file", type=Path, nargs="?", metavar="FILE", help="the .blend (default: the one Blender has open)"
+    )
 
 
 def _positive(text: str) -> int:

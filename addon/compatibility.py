@@ -6,7 +6,7 @@ import bpy
 
 MINIMUM_VERSION = (5, 1, 0)
 UNTESTED_VERSION = (5, 3, 0)
-"""From here on Cycles' dielectric closure turns the index of back faces itself, so the shader's would be turned twice."""
+"""From here on Cycles' dielectric closure turns the index of back faces itself, and the shader's would be turned twice."""
 
 
 class UnsupportedError(RuntimeError):
@@ -22,9 +22,15 @@ def blender_problem(version: tuple[int, int, int] | None = None, with_osl: bool 
     with_osl = bpy.app.build_options.cycles_osl if with_osl is None else with_osl
     name = ".".join(map(str, version[:2]))
     if version < MINIMUM_VERSION:
-        return f"Blender {name} is too old for nested dielectrics: its shaders cannot read other objects' media; use Blender 5.1 or 5.2"
+        return (
+            f"Blender {name} is too old for nested dielectrics: its shaders cannot read other objects' media; "
+            "use Blender 5.1 or 5.2"
+        )
     if version >= UNTESTED_VERSION:
-        return f"Blender {name} is newer than this extension, and its Cycles may turn indices of refraction the other way; use Blender 5.2 LTS, or a newer version of the extension"
+        return (
+            f"Blender {name} is newer than this extension, and its Cycles may turn indices of refraction the other way; "
+            "use Blender 5.2 LTS, or a newer version of the extension"
+        )
     if not with_osl:
         return "this Blender was built without Open Shading Language; use the build from blender.org or the bpy wheel"
     return None
@@ -35,7 +41,10 @@ def settings_problem(scene: bpy.types.Scene) -> str | None:
     if scene.render.engine != "CYCLES":
         return f"scene {scene.name!r} renders with {scene.render.engine}; nested dielectrics need Cycles"
     if not scene.cycles.shading_system:
-        return f"scene {scene.name!r} renders without Open Shading Language; switch it on in Render properties, or press Prepare Scene"
+        return (
+            f"scene {scene.name!r} renders without Open Shading Language; "
+            "switch it on in Render properties, or press Prepare Scene"
+        )
     if scene.cycles.device != "CPU":
         return (
             f"scene {scene.name!r} renders on the GPU, where shaders cannot trace rays; "

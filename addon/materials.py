@@ -8,7 +8,7 @@ from typing import Any
 import bpy
 
 from . import node_group
-from .parameters import GROUP_NAME, PARAMETERS, Choice, Parameter, ParameterError, check_keywords
+from .parameters import GROUP_NAME, PARAMETERS, Choice, Parameter, check_keywords
 from .presets import load_preset
 
 

@@ -18,14 +18,17 @@ def assign(
 ) -> bpy.types.Material:
     """Make an object a medium.
 
-    The material takes the place of the object's active material, or its first slot. ``material`` may be the name of a preset:
+    The material takes the place of the object's active material, or its first slot. ``material`` may be the name of a
+    preset:
     a material of that preset that is already in the file is used again.
 
     :param priority: the object's own priority; None leaves that of the material in force.
     :raises ParameterError: if the object cannot carry a material, or the preset or the priority is unknown.
     """
     if getattr(obj.data, "materials", None) is None:
-        raise ParameterError(f"{obj.name!r} is {obj.type.lower()}; a medium needs a closed mesh, curve, surface, text or metaball")
+        raise ParameterError(
+            f"{obj.name!r} is {obj.type.lower()}; a medium needs a closed mesh, curve, surface, text or metaball"
+        )
     if priority is not None:
         check_priority(priority)
     if isinstance(material, str):
@@ -102,7 +105,8 @@ def winning_order(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]
 def move_priority(scene: bpy.types.Scene, obj: bpy.types.Object, step: int) -> bool:
     """Move an object one place up (-1) or down (+1) in the winning order; False if it is at the end already.
 
-    An object that shares its priority with others is parted from them; one that has its own changes places with the next level.
+    An object that shares its priority with others is parted from them; one that has its own changes places with the
+    next level.
     """
     levels: dict[int, list[bpy.types.Object]] = {}
     for medium in media(scene):

@@ -8,7 +8,8 @@ import numpy as np
 def open_edge_count(triangles: np.ndarray) -> int:
     """Count edges that a closed, consistently oriented surface would not have.
 
-    :param triangles: (n, 3) vertex indices. In a closed oriented surface every directed edge is met exactly as often as its reverse.
+    :param triangles: (n, 3) vertex indices. In a closed oriented surface every directed edge is met exactly as often
+        as its reverse.
     """
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).astype(np.int64)
     forward = edges[:, 0] < edges[:, 1]
@@ -22,7 +23,8 @@ def open_edge_count(triangles: np.ndarray) -> int:
 def signed_volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
     """Return the volume inside a closed mesh, negative if its normals point inwards.
 
-    Sum of the tetrahedra of every triangle and the origin, by the divergence theorem. ``vertices``: (m, 3), cubed in the result.
+    Sum of the tetrahedra of every triangle and the origin, by the divergence theorem. ``vertices``: (m, 3), cubed in
+    the result.
     """
     if len(triangles) == 0:
         return 0.0

@@ -40,8 +40,10 @@ _SOCKET_TYPES = {
 def ensure_group() -> bpy.types.NodeTree:
     """Return this file's group, made on first use.
 
-    A group of the same name that was built from other shader source (an older file's) is left to the materials that use it.
-    Raises :class:`~nested_dielectric.compatibility.UnsupportedError` when this Blender compiles no OSL; nothing has been made then.
+    A group of the same name that was built from other shader source (an older file's) is left to the materials that
+    use it.
+    Raises :class:`~nested_dielectric.compatibility.UnsupportedError` when this Blender compiles no OSL; nothing has
+    been made then.
     """
     source = inlined_source(SHADER_FILE)
     digest = hashlib.sha256(f"{source}{PARAMETERS}".encode()).hexdigest()
@@ -68,12 +70,18 @@ def _shader_text(source: str) -> bpy.types.Text:
 
 def _add_sockets(tree: bpy.types.NodeTree) -> None:
     interface = tree.interface
-    interface.new_socket(CYCLES_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="The dielectric, for Cycles")
     interface.new_socket(
-        VOLUME_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader",
+        CYCLES_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="The dielectric, for Cycles"
+    )
+    interface.new_socket(
+        VOLUME_OUTPUT,
+        in_out="OUTPUT",
+        socket_type="NodeSocketShader",
         description="Absorption of light that comes straight from the camera or from an object inside the medium",
     )
-    interface.new_socket(PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="A stand-in for EEVEE")
+    interface.new_socket(
+        PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="A stand-in for EEVEE"
+    )
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
     for parameter in PARAMETERS:
         if parameter.panel not in panels:
@@ -188,7 +196,8 @@ def _math(tree: bpy.types.NodeTree, operation: str, *operands: bpy.types.NodeSoc
 def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
     """A look for EEVEE: clear, with reflections towards the edges, so that what stands in a medium stays in sight.
 
-    EEVEE's own refraction shows no second refracting object through the first. The reflectance is that of Schlick (1994), the same
+    EEVEE's own refraction shows no second refracting object through the first. The reflectance is that of Schlick
+    (1994), the same
     from inside as from outside: total reflection would hide what lies behind.
     """
     nodes, links = tree.nodes, tree.links

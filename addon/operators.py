@@ -6,7 +6,6 @@ import bpy
 
 from . import media
 from .compatibility import UnsupportedError, blender_problem
-from .materials import medium_material
 from .parameters import ParameterError
 from .preparation import prepare
 from .presets import load_preset, preset_names

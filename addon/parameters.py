@@ -141,42 +141,147 @@ SHADOW_MODES = (
 
 DISTRIBUTIONS = (
     Choice("GGX", "GGX", "Single scattering: rough surfaces lose some energy"),
-    Choice("MULTI_GGX", "Multiscatter GGX", "Keeps the energy of light that scatters several times on the microsurface"),
+    Choice(
+        "MULTI_GGX", "Multiscatter GGX", "Keeps the energy of light that scatters several times on the microsurface"
+    ),
     Choice("BECKMANN", "Beckmann", "A narrower lobe with shorter tails"),
 )
 
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
-        "Priority", "Medium", "INT", 0, "Where media overlap the lowest number wins; equal numbers are one medium. "
-        "An object's own priority overrides this one", 0, MAX_PRIORITY,
+        "Priority",
+        "Medium",
+        "INT",
+        0,
+        "Where media overlap the lowest number wins; equal numbers are one medium. "
+        "An object's own priority overrides this one",
+        0,
+        MAX_PRIORITY,
     ),
-    Parameter("IOR", "Medium", "FLOAT", 1.33, "Index of refraction against vacuum. Keep it unlinked: neighbours read its value",
-              0.01, 100.0),
-    Parameter("Transmittance", "Medium", "COLOR", (1.0, 1.0, 1.0),
-              "Colour left of white light after it has travelled Transmittance Depth in the medium", 0.0, 1.0),
-    Parameter("Transmittance Depth", "Medium", "FLOAT", 1.0,
-              "Distance after which Transmittance is left, in scene units; 0 switches absorption off", 0.0, 1e6, "DISTANCE"),
-    Parameter("Roughness", "Surface", "FLOAT", 0.0, "Roughness of reflection and refraction (alpha is its square)",
-              0.0, 1.0, "FACTOR"),
-    Parameter("Distribution", "Surface", "MENU", "MULTI_GGX", "Distribution of microfacet normals of a rough surface",
-              choices=DISTRIBUTIONS),
-    Parameter("Anisotropy", "Surface", "FLOAT", 0.0,
-              "Stretches rough reflections across (positive) or along (negative) the tangent; Cycles refracts isotropically",
-              -0.99, 0.99),
-    Parameter("Tangent", "Surface", "VECTOR", (0.0, 0.0, 0.0),
-              "Direction along the surface that anisotropy refers to; without a link, around the object's Z axis", unit="DIRECTION"),
-    Parameter("Normal", "Surface", "VECTOR", (0.0, 0.0, 0.0), "Normal or bump map; without a link, the surface's own normal",
-              unit="DIRECTION"),
-    Parameter("Thin Film Thickness", "Thin Film", "FLOAT", 0.0, "Thickness of an interfering film on the surface, in nm; 0 is none",
-              0.0, 100000.0, "WAVELENGTH"),
+    Parameter(
+        "IOR",
+        "Medium",
+        "FLOAT",
+        1.33,
+        "Index of refraction against vacuum. Keep it unlinked: neighbours read its value",
+        0.01,
+        100.0,
+    ),
+    Parameter(
+        "Transmittance",
+        "Medium",
+        "COLOR",
+        (1.0, 1.0, 1.0),
+        "Colour left of white light after it has travelled Transmittance Depth in the medium",
+        0.0,
+        1.0,
+    ),
+    Parameter(
+        "Transmittance Depth",
+        "Medium",
+        "FLOAT",
+        1.0,
+        "Distance after which Transmittance is left, in scene units; 0 switches absorption off",
+        0.0,
+        1e6,
+        "DISTANCE",
+    ),
+    Parameter(
+        "Roughness",
+        "Surface",
+        "FLOAT",
+        0.0,
+        "Roughness of reflection and refraction (alpha is its square)",
+        0.0,
+        1.0,
+        "FACTOR",
+    ),
+    Parameter(
+        "Distribution",
+        "Surface",
+        "MENU",
+        "MULTI_GGX",
+        "Distribution of microfacet normals of a rough surface",
+        choices=DISTRIBUTIONS,
+    ),
+    Parameter(
+        "Anisotropy",
+        "Surface",
+        "FLOAT",
+        0.0,
+        "Stretches rough reflections across (positive) or along (negative) the tangent; Cycles refracts isotropically",
+        -0.99,
+        0.99,
+    ),
+    Parameter(
+        "Tangent",
+        "Surface",
+        "VECTOR",
+        (0.0, 0.0, 0.0),
+        "Direction along the surface that anisotropy refers to; without a link, around the object's Z axis",
+        unit="DIRECTION",
+    ),
+    Parameter(
+        "Normal",
+        "Surface",
+        "VECTOR",
+        (0.0, 0.0, 0.0),
+        "Normal or bump map; without a link, the surface's own normal",
+        unit="DIRECTION",
+    ),
+    Parameter(
+        "Thin Film Thickness",
+        "Thin Film",
+        "FLOAT",
+        0.0,
+        "Thickness of an interfering film on the surface, in nm; 0 is none",
+        0.0,
+        100000.0,
+        "WAVELENGTH",
+    ),
     Parameter("Thin Film IOR", "Thin Film", "FLOAT", 1.33, "Index of refraction of the film", 1.0, 100.0),
-    Parameter("Refraction Scale", "Reflection and Refraction", "FLOAT", 1.0, "Scales all refraction; 1 is physical", 0.0, 1.0, "FACTOR"),
-    Parameter("Specular Scale", "Reflection and Refraction", "FLOAT", 1.0, "Scales all reflection; 1 is physical", 0.0, 1.0, "FACTOR"),
-    Parameter("Internal Reflections", "Reflection and Refraction", "BOOL", True,
-              "Weak reflections inside media; total internal reflection stays when they are off"),
-    Parameter("Shadow Mode", "Shadows", "MENU", "OUTSIDE_FRESNEL", "What light that goes straight through leaves in shadows",
-              choices=SHADOW_MODES),
-    Parameter("Emission at Interfaces", "Emission", "SHADER", None, "Shader added at every interface between two media or a medium and air"),
+    Parameter(
+        "Refraction Scale",
+        "Reflection and Refraction",
+        "FLOAT",
+        1.0,
+        "Scales all refraction; 1 is physical",
+        0.0,
+        1.0,
+        "FACTOR",
+    ),
+    Parameter(
+        "Specular Scale",
+        "Reflection and Refraction",
+        "FLOAT",
+        1.0,
+        "Scales all reflection; 1 is physical",
+        0.0,
+        1.0,
+        "FACTOR",
+    ),
+    Parameter(
+        "Internal Reflections",
+        "Reflection and Refraction",
+        "BOOL",
+        True,
+        "Weak reflections inside media; total internal reflection stays when they are off",
+    ),
+    Parameter(
+        "Shadow Mode",
+        "Shadows",
+        "MENU",
+        "OUTSIDE_FRESNEL",
+        "What light that goes straight through leaves in shadows",
+        choices=SHADOW_MODES,
+    ),
+    Parameter(
+        "Emission at Interfaces",
+        "Emission",
+        "SHADER",
+        None,
+        "Shader added at every interface between two media or a medium and air",
+    ),
     Parameter("Emission at Entrances", "Emission", "SHADER", None, "Shader added where a ray enters a medium from air"),
     Parameter("Emission at Exits", "Emission", "SHADER", None, "Shader added where a ray leaves all media into air"),
 )
@@ -188,7 +293,9 @@ NEIGHBOUR_PARAMETERS = ("Priority", "IOR", "Transmittance", "Transmittance Depth
 
 
 def check_keywords(keywords: dict[str, Any]) -> dict[Parameter, Any]:
-    """Match keyword arguments to parameters and check their values; :class:`ParameterError` for the first that is wrong."""
+    """Match keyword arguments to parameters and check their values; :class:`ParameterError` for the first that is
+    wrong.
+    """
     checked = {}
     for keyword, value in keywords.items():
         if keyword not in BY_KEYWORD:

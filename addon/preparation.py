@@ -16,8 +16,10 @@ AT_LEAST = {
     "glossy_bounces": 64,
     "transparent_max_bounces": 256,
 }
-"""Limits a path through nested media needs: an invalid surface costs a transparent bounce, an interface a transmission or glossy one.
-At 64 bounces iced water loses less than a part in ten thousand of its light (shared by rays caught in total reflection)."""
+"""Limits a path through nested media needs: an invalid surface costs a transparent bounce, an interface a transmission
+or glossy one. In a white world the glass of iced water loses 4.7 % of its light at Blender's 12 bounces, 0.3 % at 64 and
+0.08 % at 256.
+"""
 
 
 @dataclass(frozen=True)

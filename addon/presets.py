@@ -29,7 +29,9 @@ def preset_names(folder: Path = PRESET_FOLDER) -> tuple[str, ...]:
 
 
 def load_preset(key: str, folder: Path = PRESET_FOLDER) -> Preset:
-    """Read one preset and check its values. Raises :class:`ParameterError` naming the preset that is unknown or wrong."""
+    """Read one preset and check its values. Raises :class:`ParameterError` naming the preset that is unknown or
+    wrong.
+    """
     path = folder / f"{key}.toml"
     if not path.is_file():
         raise ParameterError(f"unknown preset {key!r}; known are: {', '.join(preset_names(folder))}")

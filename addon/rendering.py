@@ -34,7 +34,9 @@ def render_frame(
     frame: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:
-    """Render one frame of a scene to a file and return its absolute path. The scene's own output settings stay as they were.
+    """Render one frame of a scene to a file and return its absolute path.
+
+    The scene's own output settings stay as they were.
 
     :param output: the file; its ending chooses the format.
     :param samples: samples per pixel; the scene's own unless given.
@@ -91,7 +93,12 @@ class ProgressLine:
     def __call__(self, done: int, total: int) -> None:
         tenth = 10 * done // max(total, 1)
         if self.stream.isatty():
-            print(f"\rrendering: {done} of {total} samples", end="\n" if done == total else "", file=self.stream, flush=True)
+            print(
+                f"\rrendering: {done} of {total} samples",
+                end="\n" if done == total else "",
+                file=self.stream,
+                flush=True,
+            )
         elif tenth > self.last:
             print(f"rendering: {done} of {total} samples", file=self.stream, flush=True)
         self.last = tenth

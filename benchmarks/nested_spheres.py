@@ -1,6 +1,7 @@
 """Render time of nested media against the same interfaces split by hand in Cycles' own Glass, both through OSL.
 
-Run as ``.venv/bin/python benchmarks/nested_spheres.py [ROUNDS]``. The two are rendered in turn, with their shaders compiled and the scene kept,
+Run as ``.venv/bin/python benchmarks/nested_spheres.py [ROUNDS]``. The two are rendered in turn, with their shaders
+compiled and the scene kept,
 so a round's ratio is of sampling alone; the median over the rounds is printed.
 """
 
@@ -57,8 +58,10 @@ def main() -> None:
             ours = sampling_time(lambda: build(shells, split=False))
             ratios.append(ours / reference)
             times.append(ours)
-        print(f"{label}: {statistics.median(times):.2f} s, {statistics.median(ratios):.2f} times hand-split Glass "
-              f"({min(ratios):.2f} to {max(ratios):.2f})")
+        print(
+            f"{label}: {statistics.median(times):.2f} s, {statistics.median(ratios):.2f} times hand-split Glass "
+            f"({min(ratios):.2f} to {max(ratios):.2f})"
+        )
 
 
 if __name__ == "__main__":

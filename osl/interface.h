@@ -5,18 +5,18 @@
 
 struct Interface {
   int valid;    /* the surface separates two media; otherwise it lies inside a winner and is not there */
-  Medium from;  /* medium the ray comes from */
-  Medium to;    /* medium on the other side */
+  Medium from;  /* the ray comes from it */
+  Medium to;    /* on the other side */
   int from_holders; /* objects of that medium's priority around the point */
   int to_holders;
-  int traced; /* 0 where Cycles cannot trace rays from shaders, so nothing of this is known */
+  int traced;   /* 0 where Cycles cannot trace rays from shaders, so nothing of this is known */
 };
 
 /* Schmidt and Budge, 2002 (Simple nested dielectrics in ray traced images), without their per-ray interface list: the
  * media around the point are asked of the scene.
  *
- * Both sides of a surface share the other media, seen from outside it. Entering, those are the media just before it, leaving, those
- * just behind it, so of two coincident faces one is valid and one is not whichever is met first. */
+ * Both sides of a surface share the other media, seen from outside it. Entering, those are the media just before it,
+ * leaving, those just behind it, so of two coincident faces one is valid and one is not whichever is met first. */
 Interface resolve_interface(Medium own)
 {
   Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, own.priority);

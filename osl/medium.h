@@ -34,7 +34,8 @@ int absorbs(Medium m)
 }
 
 /* Cycles evaluates these RNA paths on the evaluated object, so a neighbour's keyframed or driven socket is read as it is
- * at the rendered frame and nothing of the extension is needed. The fourth component tells a value (1) from a missing path (0). */
+ * at the rendered frame and nothing of the extension is needed. The fourth component tells a value (1) from a missing
+ * path (0). */
 #define OBJECT_PRIORITY "\001object:nd_priority"
 #define SOCKET(slot, name) \
   "\001object:material_slots[" slot "].material.node_tree.nodes[\"Nested Dielectric\"].inputs[\"" name "\"].default_value"
@@ -53,9 +54,9 @@ float shaded_priority(float material_priority)
 /* Any material in the second slot: an object without one needs no look at the face that was hit. */
 #define SECOND_SLOT "\001object:material_slots[1].material.pass_index"
 
-/* The medium that was hit last by trace() is made of the nested dielectric of the face that was hit. A face with another material, such
- * as a label on a bottle, closes the object's surface all the same: it counts as the first dielectric of the object.
- * Returns that slot's priority, or AIR_PRIORITY if the object has no nested dielectric. */
+/* The medium that was hit last by trace() is made of the nested dielectric of the face that was hit. A face with another
+ * material, such as a label on a bottle, closes the object's surface all the same: it counts as the first dielectric of
+ * the object. Returns that slot's priority, or AIR_PRIORITY if the object has no nested dielectric. */
 float hit_slot(output int slot)
 {
   string priorities[MATERIAL_SLOTS] = SOCKETS("Priority");

@@ -47,9 +47,9 @@ struct Surroundings {
 /* The media that fill the point just off P in the given direction, P's own object left out.
  *
  * The winding number of a closed surface about a point is the sum of the signed crossings along any ray from it (Jacobson,
- * Kavan, Sorkine-Hornung 2013, section 3). Summed per priority it also makes objects of equal priority one medium. The running sum
- * is above zero only if some object holds the point, so a probe may stop at the first sum that decides that the surface's own
- * medium does not win. */
+ * Kavan, Sorkine-Hornung 2013, section 3). Summed per priority it also makes objects of equal priority one medium. The
+ * running sum is above zero only if some object holds the point, so a probe may stop at the first sum that decides that
+ * the surface's own medium does not win. */
 Surroundings probe_surroundings(point origin, vector direction, float material_priority)
 {
   float level[PROBE_LEVELS];
@@ -107,8 +107,8 @@ Surroundings probe_surroundings(point origin, vector direction, float material_p
 }
 
 /* How far a ray from inside a medium runs in it: to the surface where it ends, to a foreign object if those stop it, or
- * to reach. `holders` is the number of objects of its priority around the origin; a surface of lower precedence
- * inside the medium does not exist. */
+ * to reach. `holders` is the number of objects of its priority around the origin; surfaces of media that the medium wins
+ * over do not exist in it. */
 float medium_extent(
     point origin, vector direction, Medium m, int holders, float reach, int foreign_stops, output int foreign)
 {

@@ -20,7 +20,9 @@ BOUNCES = 256
 
 
 def new_scene(resolution: int = 32) -> bpy.types.Scene:
-    """An empty scene whose renders are unbiased: no clamping, denoising or adaptive sampling, a box filter of one pixel."""
+    """An empty scene whose renders are unbiased: no clamping, denoising or adaptive sampling, a box filter of one
+    pixel.
+    """
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -78,7 +80,8 @@ def tile_means(pictures: np.ndarray, size: int = 16) -> np.ndarray:
 def assert_same_picture(ours: np.ndarray, reference: np.ndarray, errors: float = 4.0, mean: float = 1e-3) -> None:
     """Two sets of batches show the same picture.
 
-    No 16x16 tile differs by more than `errors` standard errors, estimated from the spread of the batches (Student's t with 30 degrees
+    No 16x16 tile differs by more than `errors` standard errors, estimated from the spread of the batches (Student's t
+    with 30 degrees
     of freedom passes 4 in one of 2,600 tiles by chance), and the mean of the whole differs by less than `mean` of it.
     """
     a, b = tile_means(ours), tile_means(reference)
@@ -149,7 +152,9 @@ def add_camera(location, target, width: float | None = None, angle: float = 40.0
     return camera
 
 
-def add_mesh(name: str, build, material: bpy.types.Material | None = None, priority: int | None = None, smooth: bool = False):
+def add_mesh(
+    name: str, build, material: bpy.types.Material | None = None, priority: int | None = None, smooth: bool = False
+):
     """An object of the mesh that `build(bm)` makes; a nested dielectric if its material is one."""
     bm = bmesh.new()
     build(bm)
@@ -187,7 +192,9 @@ def add_box(name: str, low, high, material=None, priority=None):
 def add_plane(name: str, size: float, location, normal, material=None):
     """A square that faces along its normal."""
     matrix = Matrix.Translation(location) @ Vector(normal).to_track_quat("Z", "Y").to_matrix().to_4x4()
-    return add_mesh(name, lambda bm: bmesh.ops.create_grid(bm, x_segments=1, y_segments=1, size=size / 2, matrix=matrix), material)
+    return add_mesh(
+        name, lambda bm: bmesh.ops.create_grid(bm, x_segments=1, y_segments=1, size=size / 2, matrix=matrix), material
+    )
 
 
 def native(name: str, kind: str, **inputs) -> bpy.types.Material:
@@ -229,7 +236,9 @@ def add_sun(direction, irradiance: float = 1.0) -> bpy.types.Object:
 
 
 def fresnel(degrees: float, n1: float, n2: float) -> float:
-    """Unpolarised reflectance from Snell's law and the mean of Fresnel's s and p amplitudes squared (Born and Wolf, 1.5.2)."""
+    """Unpolarised reflectance from Snell's law and the mean of Fresnel's s and p amplitudes squared (Born and Wolf,
+    1.5.2).
+    """
     cos_i = math.cos(math.radians(degrees))
     sin_t = n1 / n2 * math.sin(math.radians(degrees))
     if sin_t >= 1.0:

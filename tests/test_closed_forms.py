@@ -24,7 +24,8 @@ from scenes import (
     set_world,
 )
 
-# Single precision through a handful of operations; a smooth interface without internal reflections has no noise but the choice
+# Single precision through a handful of operations; a smooth interface without internal reflections has no noise but
+# the choice
 # between two lobes, one of which is black.
 ROUNDING = 2e-5
 
@@ -33,7 +34,8 @@ DEPTH = 0.5
 THICKNESS = 0.7
 
 
-# Off the diagonals along which faces are split into triangles: where a ray meets such an edge to the last bit, Cycles' own Glass too takes
+# Off the diagonals along which faces are split into triangles: where a ray meets such an edge to the last bit,
+# Cycles' own Glass too takes
 # the neighbouring triangle for another surface.
 AIM = (0.37, 0.11, 0.0)
 
@@ -103,7 +105,8 @@ def test_a_slab_displaces_a_ray_as_snell_says():
     arrives = 8 - thickness * math.tan(inside) - (drop - thickness) * math.tan(slope)
     through = (1 - fresnel(degrees, 1, ior)) * (1 - fresnel(math.degrees(inside), ior, 1))
     picture = render(1024)
-    # Of the two lobes at the entrance one is black, so a pixel is `arrives` times the share of samples that went through: divided by that
+    # Of the two lobes at the entrance one is black, so a pixel is `arrives` times the share of samples that went
+    # through: divided by that
     # share, which the ruler's constant green would give, position is left. Half a pixel is 6e-5.
     assert np.abs(picture[..., 0].mean() / through - arrives) < 4 * standard_error(picture)[0] / through + 6e-5
 
@@ -131,7 +134,9 @@ def test_total_reflection_stays_when_internal_reflections_are_off():
 def test_absorption_follows_beer_lambert(degrees):
     new_scene(16)
     set_half_world(2, -1)
-    tinted = nd.new_material("Tinted", ior=1.5, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False)
+    tinted = nd.new_material(
+        "Tinted", ior=1.5, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False
+    )
     add_box("Slab", (-10, -10, -THICKNESS), (10, 10, 0), tinted)
     aim_camera(degrees)
     inside = math.degrees(math.asin(math.sin(math.radians(degrees)) / 1.5))
@@ -142,7 +147,9 @@ def test_absorption_follows_beer_lambert(degrees):
 def test_light_that_crosses_ice_is_not_tinted_by_the_water_around_it():
     new_scene(16)
     set_half_world(2, -1)
-    water = nd.new_material("Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False)
+    water = nd.new_material(
+        "Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False
+    )
     ice = nd.new_material("Ice", ior=1.31, internal_reflections=False)
     add_box("Water", (-10, -10, -2.0), (10, 10, 0), water, priority=2)
     add_box("Ice", (-40, -40, -1.5), (40, 40, -0.5), ice, priority=1)
@@ -156,7 +163,13 @@ def test_an_object_in_the_drink_is_seen_through_what_lies_before_it(roughness):
     new_scene(16)
     set_world((0, 0, 0))
     water = nd.new_material(
-        "Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False, roughness=roughness, distribution="GGX"
+        "Water",
+        ior=1.33,
+        transmittance=TINT,
+        transmittance_depth=DEPTH,
+        internal_reflections=False,
+        roughness=roughness,
+        distribution="GGX",
     )
     add_box("Water", (-10, -10, -20), (10, 10, 0), water)
     add_plane("Spoon", 30, (0, 0, -THICKNESS), (0, 0, 1), emission())
@@ -169,7 +182,12 @@ def test_an_object_in_the_drink_is_lit_through_what_lies_above_it():
     new_scene(16)
     set_world((0, 0, 0))
     water = nd.new_material(
-        "Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False, shadow_mode="TRANSMISSION"
+        "Water",
+        ior=1.33,
+        transmittance=TINT,
+        transmittance_depth=DEPTH,
+        internal_reflections=False,
+        shadow_mode="TRANSMISSION",
     )
     add_box("Water", (-10, -10, -20), (10, 10, 0), water)
     add_plane("Spoon", 30, (0, 0, -THICKNESS), (0, 0, 1), diffuse())
@@ -183,7 +201,9 @@ def test_a_camera_in_the_drink_sees_what_the_way_leaves():
     """Straight at an object in the same medium, and out through the surface."""
     new_scene(16)
     set_half_world(2, -1)
-    water = nd.new_material("Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False)
+    water = nd.new_material(
+        "Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False
+    )
     add_box("Water", (-10, -10, -1.1), (10, 10, 10), water)
     x, y, _ = AIM
     add_camera((x, y, 0), (x, y, -1), width=0.01)
@@ -193,7 +213,9 @@ def test_a_camera_in_the_drink_sees_what_the_way_leaves():
 
 
 def test_light_from_one_object_in_the_drink_to_another_is_absorbed_on_its_way():
-    """A white floor under a glowing ceiling that is large, so every ray from the floor meets it; seen from just above the floor."""
+    """A white floor under a glowing ceiling that is large, so every ray from the floor meets it; seen from just above
+    the floor.
+    """
     new_scene(16)
     set_world((0, 0, 0))
     height = 0.5
@@ -280,7 +302,9 @@ def test_each_emission_port_adds_its_shader_only_where_it_says(socket, at_entran
 
 
 def test_emission_stays_away_from_surfaces_that_do_not_exist():
-    """Water that reaches into glass: its hidden face is neither interface, entrance nor exit; its inner faces are interfaces only."""
+    """Water that reaches into glass: its hidden face is neither interface, entrance nor exit; its inner faces are
+    interfaces only.
+    """
     new_scene(8)
     set_world((0, 0, 0))
     water = nd.new_material("Water", ior=1.33, internal_reflections=False)

@@ -86,6 +86,8 @@ def test_an_ending_without_a_format_is_named_before_anything_is_rendered(file, t
     assert_one_line(done.stderr, "picture.xyz", ".png")
 
 
-@pytest.mark.parametrize("arguments", [(), ("rendr",), ("render",), ("render", "a.blend", "-o", "b.png", "--samples", "0")])
+@pytest.mark.parametrize(
+    "arguments", [(), ("rendr",), ("render",), ("render", "a.blend", "-o", "b.png", "--samples", "0")]
+)
 def test_wrong_usage_has_exit_code_2(arguments):
     assert run(*arguments).returncode == 2

@@ -34,8 +34,12 @@ def assert_white(picture: np.ndarray) -> None:
     assert np.abs(picture - 1.0).max() <= 2.0 / SAMPLES + 1e-5
 
 
-CAMERAS = {"outside": ((0.4, -5, 0.3), (0, 0, 0)), "inside the bubble": ((0.1, 0.05, 0), (1, -1, 0.3)),
-           "inside the glass": ((-0.9, 0.0, 0.05), (1, 0, 0)), "inside ice in water": ((0.45, -0.3, 0.2), (0, 1, 0))}
+CAMERAS = {
+    "outside": ((0.4, -5, 0.3), (0, 0, 0)),
+    "inside the bubble": ((0.1, 0.05, 0), (1, -1, 0.3)),
+    "inside the glass": ((-0.9, 0.0, 0.05), (1, 0, 0)),
+    "inside ice in water": ((0.45, -0.3, 0.2), (0, 1, 0)),
+}
 
 
 @pytest.mark.parametrize("place", CAMERAS)

@@ -88,11 +88,17 @@ def test_where_the_shader_cannot_trace_rays_it_shows_magenta(monkeypatch):
 
 
 def test_glass_is_not_taken_for_a_lamp():
-    """Cycles counts meshes whose shader may emit among the lamps it sends shadow rays to. An unlit diffuse plane would have noise from them."""
+    """Cycles counts meshes whose shader may emit among the lamps it sends shadow rays to. An unlit diffuse plane
+    would have noise from them.
+    """
     new_scene(16)
     set_world((0, 0, 0))
     ball = add_sphere("Ball", 1.0, nd.new_material("Glass", preset="glass"))
-    shader = next(node for node in ball.active_material.node_tree.nodes["Nested Dielectric"].node_tree.nodes if node.type == "SCRIPT")
+    shader = next(
+        node
+        for node in ball.active_material.node_tree.nodes["Nested Dielectric"].node_tree.nodes
+        if node.type == "SCRIPT"
+    )
     assert '"emission"' not in shader.bytecode
 
 
@@ -166,13 +172,21 @@ def test_an_open_mesh_renders_without_nan_or_gain():
     set_world()
     add_camera((3, -4, 3), (0, 0, 0), angle=30)
     tint = {"transmittance": (0.9, 0.5, 0.3), "transmittance_depth": 0.8}
-    add_mesh("Sheet", lambda bm: bmesh.ops.create_grid(bm, x_segments=4, y_segments=4, size=1.0), nd.new_material("Sheet", ior=1.33, **tint), 2)
+    add_mesh(
+        "Sheet",
+        lambda bm: bmesh.ops.create_grid(bm, x_segments=4, y_segments=4, size=1.0),
+        nd.new_material("Sheet", ior=1.33, **tint),
+        2,
+    )
     add_box("Ice", (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5), nd.new_material("Ice", ior=1.31, **tint), 1)
     picture = render(16)
     assert np.isfinite(picture).all() and picture.max() <= 1.0 + 1e-5
 
 
-@pytest.mark.parametrize("socket, value", [("IOR", float("nan")), ("Roughness", float("nan")), ("Transmittance Depth", float("inf")), ("IOR", 1e30)])
+@pytest.mark.parametrize(
+    "socket, value",
+    [("IOR", float("nan")), ("Roughness", float("nan")), ("Transmittance Depth", float("inf")), ("IOR", 1e30)],
+)
 def test_numbers_no_slider_would_give_render_finite(socket, value):
     ball = ball_in_furnace()
     add_sphere("Inner", 0.5, nd.new_material("Water", preset="water"), 1)

@@ -51,13 +51,21 @@ SIDES = 24
 
 def cylinder_frame(axis: str) -> Matrix:
     """Turns the z axis to the cylinder's own, and about it so that no faces of two cylinders are coincident."""
-    turn = {"X": Matrix.Rotation(np.pi / 2, 4, "Y"), "Y": Matrix.Rotation(np.pi / 2, 4, "X"), "Z": Matrix.Identity(4)}[axis]
+    turn = {"X": Matrix.Rotation(np.pi / 2, 4, "Y"), "Y": Matrix.Rotation(np.pi / 2, 4, "X"), "Z": Matrix.Identity(4)}[
+        axis
+    ]
     return turn @ Matrix.Rotation(0.1 + 0.37 * "XYZ".index(axis), 4, "Z")
 
 
 def build_cylinder(bm: bmesh.types.BMesh, axis: str) -> None:
     bmesh.ops.create_cone(
-        bm, cap_ends=True, segments=SIDES, radius1=RADII[axis], radius2=RADII[axis], depth=LENGTH, matrix=cylinder_frame(axis)
+        bm,
+        cap_ends=True,
+        segments=SIDES,
+        radius1=RADII[axis],
+        radius2=RADII[axis],
+        depth=LENGTH,
+        matrix=cylinder_frame(axis),
     )
 
 
@@ -88,7 +96,9 @@ def lies_on(axis: str, face: bmesh.types.BMFace) -> bool:
 
 
 def add_patch(name: str, mesh: bpy.types.Mesh, axis: str, ratio: float) -> None:
-    """The faces of a mesh that lie on a cylinder's surface, as an interface of that ratio of indices (inside / outside)."""
+    """The faces of a mesh that lie on a cylinder's surface, as an interface of that ratio of indices (inside /
+    outside).
+    """
 
     def build(bm: bmesh.types.BMesh) -> None:
         bm.from_mesh(mesh)
@@ -100,7 +110,9 @@ def add_patch(name: str, mesh: bpy.types.Mesh, axis: str, ratio: float) -> None:
 
 
 def add_split_cylinders(order: tuple[str, str, str]) -> None:
-    """Every interface of the cylinders, the first of the order winning over the others: outside, and between each two."""
+    """Every interface of the cylinders, the first of the order winning over the others: outside, and between each
+    two.
+    """
     union = boolean(order[0], "UNION", order[1:])
     for axis in order:
         add_patch(f"{axis} in air", union, axis, INDICES[axis])

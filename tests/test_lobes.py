@@ -1,4 +1,4 @@
-"""Rough, filmed, bumped and anisotropic surfaces, and light found through them, against Cycles' own Glass and symmetry."""
+"""Rough, filmed, bumped and anisotropic surfaces, and light found through them, against Cycles' own Glass."""
 
 import math
 
@@ -46,8 +46,11 @@ def test_a_rough_ball_matches_cycles_own_glass(distribution):
         material.node_tree.nodes["Glass BSDF"].distribution = distribution
         return material
 
-    ours = ball(lambda: nd.new_material("Glass", ior=1.5, roughness=0.4, distribution=distribution, shadow_mode="BLACK"))
-    # The whole image agrees to its own noise: 256 samples of 2,304 pixels with a deviation of 0.3 give 4e-4 of a mean of 0.4.
+    ours = ball(
+        lambda: nd.new_material("Glass", ior=1.5, roughness=0.4, distribution=distribution, shadow_mode="BLACK")
+    )
+    # The whole image agrees to its own noise: 256 samples of 2,304 pixels with a deviation of 0.3 give 4e-4 of a mean
+    # of 0.4.
     assert_same_picture(ours, ball(reference), mean=4e-3)
 
 
@@ -60,7 +63,9 @@ def test_a_thin_film_matches_cycles_own_glass():
             material.node_tree.nodes["Glass BSDF"].inputs[name].default_value = value
         return material
 
-    ours = ball(lambda: nd.new_material("Glass", ior=1.5, thin_film_thickness=350.0, thin_film_ior=1.8, shadow_mode="BLACK"))
+    ours = ball(
+        lambda: nd.new_material("Glass", ior=1.5, thin_film_thickness=350.0, thin_film_ior=1.8, shadow_mode="BLACK")
+    )
     assert_same_picture(ours, ball(reference), mean=4e-3)
     assert np.ptp(ours.mean(axis=0), axis=2).max() > 0.05  # interference is coloured
 
@@ -87,7 +92,9 @@ def reflected_glow(anisotropy: float, tangent: tuple[float, float, float]) -> np
     """The picture of a small lamp in a rough block that only reflects."""
     new_scene(32)
     set_world((0, 0, 0))
-    material = nd.new_material("Block", ior=1.5, roughness=0.5, anisotropy=anisotropy, refraction_scale=0.0, distribution="GGX")
+    material = nd.new_material(
+        "Block", ior=1.5, roughness=0.5, anisotropy=anisotropy, refraction_scale=0.0, distribution="GGX"
+    )
     tree = material.node_tree
     direction = tree.nodes.new("ShaderNodeCombineXYZ")
     for axis, value in zip("XYZ", tangent):
@@ -159,7 +166,9 @@ def test_equal_priorities_are_one_medium():
     """Two overlapping slabs: no surface between them, absorption over their common thickness."""
     new_scene(16)
     set_half_world(2, -1)
-    tinted = nd.new_material("Tinted", ior=1.5, transmittance=(0.8, 0.5, 0.2), transmittance_depth=0.5, internal_reflections=False)
+    tinted = nd.new_material(
+        "Tinted", ior=1.5, transmittance=(0.8, 0.5, 0.2), transmittance_depth=0.5, internal_reflections=False
+    )
     add_box("Upper", (-10, -10, -0.6), (10, 10, 0), tinted, 1)
     add_box("Lower", (-10.1, -10.1, -1.0), (10.1, 10.1, -0.4), tinted, 1)
     add_camera((0.37, 0.11, 3), (0.37, 0.11, 0), width=0.01)

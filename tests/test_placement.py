@@ -13,7 +13,8 @@ from scenes import add, add_box, add_camera, add_mesh, add_sphere, native, new_s
 
 SAMPLES = 32
 
-# The same rays meet the same triangles to rounding; where rounding sends single samples another way, pixels differ by that sample.
+# The same rays meet the same triangles to rounding; where rounding sends single samples another way, pixels differ by
+# that sample.
 MEAN_TOLERANCE = 2e-3
 OUTLIERS = 0.02
 
@@ -135,9 +136,7 @@ def object_linked_slot(smooth: bool) -> None:
 
 def material_priority(smooth: bool) -> None:
     """No priority of its own: the material's holds."""
-    material = nd.new_material(
-        "Water", ior=1.33, transmittance=(0.9, 0.6, 0.4), transmittance_depth=0.7, priority=2
-    )
+    material = nd.new_material("Water", ior=1.33, transmittance=(0.9, 0.6, 0.4), transmittance_depth=0.7, priority=2)
     add_mesh("Object", egg, material, None, smooth).data.transform(SHAPE)
 
 
@@ -233,7 +232,8 @@ def test_media_in_motion_match_the_mean_of_still_frames(deforming):
     obj.cycles.use_deform_motion = True
     moving = np.mean([render(32, seed=100 + index) for index in range(instants)], axis=0)
 
-    # 384 samples each; a striped world has a standard deviation of 0.3 a sample, so 0.016 a pixel and 0.0003 in the mean of all.
+    # 384 samples each; a striped world has a standard deviation of 0.3 a sample, so 0.016 a pixel and 0.0003 in the
+    # mean of all.
     assert abs(moving.mean() - still.mean()) < 4 * 0.3 / math.sqrt(2 * 384 * moving[..., 0].size) * 2
     blocks = np.abs(moving - still).reshape(6, 8, 6, 8, 3).mean(axis=(1, 3))
     assert blocks.max() < 0.05

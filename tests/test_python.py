@@ -176,7 +176,9 @@ def test_a_broken_preset_file_is_named(tmp_path):
 
 def test_every_socket_has_its_limits_and_a_description():
     group = nd.new_material("M").node_tree.nodes["Nested Dielectric"].node_tree
-    sockets = {item.name: item for item in group.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT"}
+    sockets = {
+        item.name: item for item in group.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT"
+    }
     assert list(sockets) == [parameter.name for parameter in parameters.PARAMETERS]
     for parameter in parameters.PARAMETERS:
         item = sockets[parameter.name]

@@ -2,7 +2,7 @@
 
 import random
 
-import bpy  # before bmesh, which lives inside it
+import bpy  # noqa: F401  before bmesh, which lives inside it
 import bmesh  # isort: skip
 import numpy as np
 import pytest
@@ -37,7 +37,9 @@ def build_flawed_solid(bm: bmesh.types.BMesh, chance: random.Random) -> None:
 
 
 def build_chaos(seed: int, roughness: float) -> None:
-    """Up to seven flawed media on top of each other, at a scale from millimetres to kilometres, the camera among or before them."""
+    """Up to seven flawed media on top of each other, at a scale from millimetres to kilometres, the camera among or
+    before them.
+    """
     chance = random.Random(seed)
     new_scene(24)
     set_world()
@@ -53,7 +55,10 @@ def build_chaos(seed: int, roughness: float) -> None:
             keywords["transmittance"] = (chance.random(), chance.random(), 0.0)
             keywords["transmittance_depth"] = scale * 10 ** chance.uniform(-2, 1)
         obj = add_mesh(
-            f"Object {index}", lambda bm: build_flawed_solid(bm, chance), nd.new_material("M", **keywords), chance.randint(0, 3)
+            f"Object {index}",
+            lambda bm: build_flawed_solid(bm, chance),
+            nd.new_material("M", **keywords),
+            chance.randint(0, 3),
         )
         place = [scale * chance.choice((0.0, 0.0, chance.uniform(-0.7, 0.7))) for _ in range(3)]
         turn = Euler([chance.choice((0.0, chance.uniform(0.0, 3.0))) for _ in range(3)])
@@ -74,7 +79,9 @@ def test_flawed_sharp_media_never_send_back_more_light_than_they_get(seed):
 
 @pytest.mark.parametrize("seed", range(20, 24))
 def test_flawed_rough_media_stay_finite_and_make_no_light_on_average(seed):
-    """Single samples of rough lobes weigh more than 1; multi-scatter GGX may exceed 1 on average by its fit's error of a per cent."""
+    """Single samples of rough lobes weigh more than 1; multi-scatter GGX may exceed 1 on average by its fit's error
+    of a per cent.
+    """
     build_chaos(seed, roughness=0.5)
     picture = render(64)
     assert np.isfinite(picture).all() and picture.min() >= 0.0
