@@ -128,7 +128,7 @@ def test_overlapping_cylinders_match_exact_booleans(order):
     """The scene of the original paper: three cylinders cross, and priorities alone decide which is whole."""
 
     def scene() -> None:
-        new_scene(64)
+        new_scene(48)
         set_striped_world()
         add_camera((3, -5, 3.5), (0, 0, 0), angle=26)
 
