@@ -37,9 +37,9 @@ class _Shape:
     triangles: np.ndarray
 
 
-def find_problems(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> list[Problem]:
+def find_problems(scene: bpy.types.Scene) -> list[Problem]:
     """Look at every medium of a scene as it is evaluated now; change nothing."""
-    depsgraph = depsgraph or _depsgraph(scene)
+    depsgraph = _depsgraph(scene)
     objects = media(scene)
     shapes = [shape for obj in objects if (shape := _shape(obj, depsgraph)) is not None]
     problems = [problem for obj in scene.objects for problem in _node_problems(obj)]

@@ -13,12 +13,12 @@ from pathlib import Path
 
 import bpy
 
-from .compatibility import UnsupportedError, require_blender
+from .compatibility import require_blender
 from .iced_water import build_scene
 from .parameters import ParameterError
 from .preparation import prepare
 from .presets import load_preset, preset_names
-from .rendering import ProgressLine, RenderError, render_frame
+from .rendering import ProgressLine, render_frame
 
 PROGRAM = "nested-dielectric"
 DEMO_OUTPUT = Path("out/iced_water.png")
@@ -36,15 +36,10 @@ def main(arguments: list[str] | None = None) -> int:
         return int(stop.code or 0)
     try:
         options.run(options)
-    except (_Failure, UnsupportedError, ParameterError, RenderError, OSError, RuntimeError) as error:
+    except (_Failure, ParameterError, OSError, RuntimeError) as error:
         print(f"{PROGRAM}: error: {' '.join(str(error).split())}", file=sys.stderr)
         return 1
     return 0
-
-
-def command(arguments: list[str]) -> int:
-    """Entry point for Blender's ``--command``."""
-    return main(arguments)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -118,7 +113,6 @@ def _demo(options: argparse.Namespace) -> None:
 
 
 def _render(options: argparse.Namespace) -> None:
-    require_blender()
     scene = _open(options.file)
     print(prepare(scene))
     print(render_frame(scene, options.output, options.samples, options.frame, ProgressLine()))

@@ -7,7 +7,7 @@ the glass, the ice and the straw stand in the water, bubbles are bodies of air i
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from math import copysign, cos, exp, hypot, pi, radians, sin, tan
 from random import Random
 
@@ -105,10 +105,12 @@ def build_scene() -> bpy.types.Scene:
     ice = [_ice_cube(scene, index, *placement) for index, placement in enumerate(ICE, 1)]
     straw = _object(scene, "Straw", straw_mesh())
     straw.matrix_world = Matrix.LocRotScale(STRAW_FOOT, (STRAW_LEAN - STRAW_FOOT).to_track_quat("Z", "Y"), None)
-    solids = [_tree(obj) for obj in (*ice, straw)]
-    water = _object(scene, "Water", water_mesh(solids))
-    water_bubbles = _object(scene, "Bubbles in Water", spheres(_clinging_bubbles([tumbler, *ice, straw], Random(4))))
-    ice_bubbles = _object(scene, "Bubbles in Ice", spheres(_frozen_bubbles(ice, Random(5))))
+    trees = {obj: _tree(obj) for obj in (tumbler, *ice, straw)}
+    water = _object(scene, "Water", water_mesh([trees[obj] for obj in (*ice, straw)]))
+    water_bubbles = _object(scene, "Bubbles in Water", spheres(_clinging_bubbles(trees, Random(4))))
+    ice_bubbles = _object(
+        scene, "Bubbles in Ice", spheres(_frozen_bubbles({cube: trees[cube] for cube in ice}, Random(5)))
+    )
 
     bodies = {"glass": [tumbler], "water": [water], "ice": ice, "air_bubble": [water_bubbles, ice_bubbles]}
     for preset, objects in bodies.items():
@@ -267,9 +269,9 @@ def spheres(bubbles: Iterable[tuple[Vector, float]]) -> bpy.types.Mesh:
     return _smooth_mesh("Bubbles", vertices, faces)
 
 
-def _clinging_bubbles(hosts: Sequence[bpy.types.Object], random: Random) -> list[tuple[Vector, float]]:
+def _clinging_bubbles(trees: Mapping[bpy.types.Object, BVHTree], random: Random) -> list[tuple[Vector, float]]:
     """Bubbles under water that sit on the surfaces of the tumbler, the ice and the straw."""
-    trees = [_tree(obj) for obj in hosts]
+    hosts = list(trees)
     floor = TUMBLER_INSIDE[-1][1]
     bubbles: list[tuple[Vector, float]] = []
     while len(bubbles) < CLINGING_BUBBLES:
@@ -278,17 +280,16 @@ def _clinging_bubbles(hosts: Sequence[bpy.types.Object], random: Random) -> list
         radius = 0.004 + 0.011 * random.random() ** 3
         centre = host.matrix_world @ (face.center + face.normal * (radius + CLEARANCE))
         wet = floor < centre.z < WATER_LEVEL - 0.05 and hypot(centre.x, centre.y) < inner_radius(centre.z)
-        free = all(_outside_distance(tree, centre) > radius + CLEARANCE / 2.0 for tree in trees)
+        free = all(_outside_distance(tree, centre) > radius + CLEARANCE / 2.0 for tree in trees.values())
         if wet and free and _apart(centre, radius, bubbles):
             bubbles.append((centre, radius))
     return bubbles
 
 
-def _frozen_bubbles(cubes: Sequence[bpy.types.Object], random: Random) -> list[tuple[Vector, float]]:
+def _frozen_bubbles(cubes: Mapping[bpy.types.Object, BVHTree], random: Random) -> list[tuple[Vector, float]]:
     """Bubbles in the heart of each cube, where the last water froze."""
     bubbles: list[tuple[Vector, float]] = []
-    for cube in cubes:
-        tree = _tree(cube)
+    for cube, tree in cubes.items():
         target = len(bubbles) + FROZEN_BUBBLES
         while len(bubbles) < target:
             centre = cube.matrix_world @ Vector(random.gauss(0.0, 0.14 * ICE_SIZE) for _ in range(3))

@@ -41,9 +41,8 @@ def ensure_group() -> bpy.types.NodeTree:
     """Return this file's group, made on first use.
 
     A group of the same name that was built from other shader source (an older file's) is left to the materials that
-    use it.
-    Raises :class:`~nested_dielectric.compatibility.UnsupportedError` when this Blender compiles no OSL; nothing has
-    been made then.
+    use it. Raises :class:`~nested_dielectric.compatibility.UnsupportedError` when this Blender compiles no OSL; nothing
+    has been made then.
     """
     source = inlined_source(SHADER_FILE)
     digest = hashlib.sha256(f"{source}{PARAMETERS}".encode()).hexdigest()
@@ -196,9 +195,8 @@ def _math(tree: bpy.types.NodeTree, operation: str, *operands: bpy.types.NodeSoc
 def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
     """A look for EEVEE: clear, with reflections towards the edges, so that what stands in a medium stays in sight.
 
-    EEVEE's own refraction shows no second refracting object through the first. The reflectance is that of Schlick
-    (1994), the same
-    from inside as from outside: total reflection would hide what lies behind.
+    EEVEE's own refraction shows no second refracting object through the first. The reflectance is that of Schlick (1994),
+    the same from inside as from outside: total reflection would hide what lies behind.
     """
     nodes, links = tree.nodes, tree.links
     math = partial(_math, tree)

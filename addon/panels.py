@@ -128,31 +128,32 @@ def draw_active(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Assign Preset", icon="MATERIAL")
 
 
-class ObjectPanel(bpy.types.Panel):
+class _MediaPanel:
+    """What both panels show."""
+
+    bl_label = "Nested Dielectric"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        draw(self.layout, context)
+
+
+class ObjectPanel(_MediaPanel, bpy.types.Panel):
     """Media of the scene, in the Object properties."""
 
     bl_idname = "NESTED_DIELECTRIC_PT_object"
-    bl_label = "Nested Dielectric"
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "object"
     bl_options = {"DEFAULT_CLOSED"}
 
-    def draw(self, context: bpy.types.Context) -> None:
-        draw(self.layout, context)
 
-
-class SidebarPanel(bpy.types.Panel):
+class SidebarPanel(_MediaPanel, bpy.types.Panel):
     """Media of the scene, in the sidebar of the 3D view."""
 
     bl_idname = "NESTED_DIELECTRIC_PT_sidebar"
-    bl_label = "Nested Dielectric"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Nested Dielectric"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        draw(self.layout, context)
 
 
 CLASSES = (MediaList, ObjectPanel, SidebarPanel)

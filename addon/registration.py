@@ -68,4 +68,4 @@ def run_command(arguments: list[str]) -> int:
     """``blender --command nested_dielectric``."""
     from . import cli
 
-    return cli.command(arguments)
+    return cli.main(arguments)

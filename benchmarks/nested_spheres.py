@@ -1,8 +1,7 @@
 """Render time of nested media against the same interfaces split by hand in Cycles' own Glass, both through OSL.
 
 Run as ``.venv/bin/python benchmarks/nested_spheres.py [ROUNDS]``. The two are rendered in turn, with their shaders
-compiled and the scene kept,
-so a round's ratio is of sampling alone; the median over the rounds is printed.
+compiled and the scene kept, so a round's ratio is of sampling alone; the median over the rounds is printed.
 """
 
 import statistics

@@ -19,9 +19,12 @@ struct Interface {
  * leaving, those just behind it, so of two coincident faces one is valid and one is not whichever is met first. */
 Interface resolve_interface(Medium own)
 {
-  Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, own.priority);
+  /* The way through a medium that absorbs ends where another wins, so its priority counts even alone. */
+  int known = absorbs(own);
+  float priority = known ? shaded_priority(own.priority) : own.priority;
+  Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, priority, known);
   Medium inner = own;
-  inner.priority = absorbs(own) ? shaded_priority(own.priority) : outer.own_priority;
+  inner.priority = outer.own_priority;
   Interface s;
   s.traced = outer.traced;
   s.valid = inner.priority < outer.medium.priority;

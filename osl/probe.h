@@ -40,7 +40,7 @@ int hit_crossing(vector direction)
 struct Surroundings {
   Medium medium;      /* the winner among the other media */
   int holders;        /* objects of its priority that hold the point */
-  float own_priority; /* of the surface's object; the material's if no other medium was met */
+  float own_priority; /* of the surface's object; the material's while nothing asked for it */
   int traced;         /* 0 where Cycles cannot trace rays from shaders */
 };
 
@@ -49,17 +49,20 @@ struct Surroundings {
  * The winding number of a closed surface about a point is the sum of the signed crossings along any ray from it (Jacobson,
  * Kavan, Sorkine-Hornung 2013, section 3). Summed per priority it also makes objects of equal priority one medium. The
  * running sum is above zero only if some object holds the point, so a probe may stop at the first sum that decides that
- * the surface's own medium does not win. */
-Surroundings probe_surroundings(point origin, vector direction, float material_priority)
+ * the surface's own medium does not win.
+ *
+ * own_priority is the material's until an object's own is asked for, which a surface that meets no other medium never
+ * needs; own_is_known tells that it has been. */
+Surroundings probe_surroundings(point origin, vector direction, float own_priority, int own_is_known)
 {
   float level[PROBE_LEVELS];
   int sum[PROBE_LEVELS];
   int levels = 0;
-  int met_medium = 0;
+  int known = own_is_known;
   Surroundings s;
   s.medium = air();
   s.holders = 0;
-  s.own_priority = material_priority;
+  s.own_priority = own_priority;
   s.traced = 1;
   float t = 0.0;
   for (int i = 0; i < PROBE_HITS; i++) {
@@ -80,9 +83,9 @@ Surroundings probe_surroundings(point origin, vector direction, float material_p
     float priority = hit_priority(slot);
     if (priority >= AIR_PRIORITY || priority > s.medium.priority)
       continue;
-    if (!met_medium) {
-      met_medium = 1;
-      s.own_priority = shaded_priority(material_priority);
+    if (!known) {
+      known = 1;
+      s.own_priority = shaded_priority(own_priority);
     }
     int k = 0;
     while (k < levels && level[k] != priority)

@@ -18,11 +18,13 @@ import OpenImageIO as oiio  # noqa: E402  Blender's own copy
 
 BOUNCES = 256
 
+# Single precision through a handful of operations; a smooth interface without internal reflections has no noise but
+# the choice between two lobes, one of which is black.
+ROUNDING = 2e-5
+
 
 def new_scene(resolution: int = 32) -> bpy.types.Scene:
-    """An empty scene whose renders are unbiased: no clamping, denoising or adaptive sampling, a box filter of one
-    pixel.
-    """
+    """An empty scene whose renders are unbiased: no clamping, denoising or adaptive sampling, a box filter."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -81,8 +83,8 @@ def assert_same_picture(ours: np.ndarray, reference: np.ndarray, errors: float =
     """Two sets of batches show the same picture.
 
     No 16x16 tile differs by more than `errors` standard errors, estimated from the spread of the batches (Student's t
-    with 30 degrees
-    of freedom passes 4 in one of 2,600 tiles by chance), and the mean of the whole differs by less than `mean` of it.
+    with 30 degrees of freedom passes 4 in one of 2,600 tiles by chance), and the mean of the whole differs by less than
+    `mean` of it.
     """
     a, b = tile_means(ours), tile_means(reference)
     spread = np.sqrt(a.var(axis=0, ddof=1) / len(a) + b.var(axis=0, ddof=1) / len(b))
@@ -92,6 +94,19 @@ def assert_same_picture(ours: np.ndarray, reference: np.ndarray, errors: float =
     assert worst < errors, f"a tile differs by {worst:.1f} standard errors"
     relative = abs(ours.mean() / reference.mean() - 1.0)
     assert relative < mean, f"the mean differs by {relative:.2%}"
+
+
+def standard_error(picture: np.ndarray) -> np.ndarray:
+    """Of the mean of all pixels, by channel."""
+    pixels = picture.reshape(-1, 3)
+    return pixels.std(axis=0) / math.sqrt(len(pixels))
+
+
+def assert_mean(picture: np.ndarray, expected) -> None:
+    """The mean is as expected within 4 standard errors and rounding."""
+    mean = picture.reshape(-1, 3).mean(axis=0)
+    tolerance = 4.0 * standard_error(picture) + ROUNDING
+    assert np.all(np.abs(mean - expected) <= tolerance), f"{mean} instead of {expected} +- {tolerance}"
 
 
 def set_world(color: tuple[float, float, float] = (1.0, 1.0, 1.0), strength: float = 1.0) -> bpy.types.NodeTree:
@@ -223,6 +238,14 @@ def emission(strength: float = 1.0, color=(1.0, 1.0, 1.0)) -> bpy.types.Material
 def diffuse(albedo: float = 1.0) -> bpy.types.Material:
     """A Lambertian surface."""
     return native("Diffuse", "ShaderNodeBsdfDiffuse", Color=(albedo, albedo, albedo, 1.0))
+
+
+def add_emission_port(material, socket: str, strength: float = 1.0) -> None:
+    """Plug an emitter into an emission port of a nested dielectric."""
+    tree = material.node_tree
+    shader = tree.nodes.new("ShaderNodeEmission")
+    shader.inputs["Strength"].default_value = strength
+    tree.links.new(shader.outputs[0], tree.nodes["Nested Dielectric"].inputs[socket])
 
 
 def add_sun(direction, irradiance: float = 1.0) -> bpy.types.Object:

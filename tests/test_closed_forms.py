@@ -9,11 +9,14 @@ import pytest
 
 import nested_dielectric as nd
 from scenes import (
+    ROUNDING,
     add_box,
     add_camera,
+    add_emission_port,
     add_mesh,
     add_plane,
     add_sun,
+    assert_mean,
     diffuse,
     emission,
     fresnel,
@@ -22,21 +25,15 @@ from scenes import (
     render,
     set_half_world,
     set_world,
+    standard_error,
 )
-
-# Single precision through a handful of operations; a smooth interface without internal reflections has no noise but
-# the choice
-# between two lobes, one of which is black.
-ROUNDING = 2e-5
 
 TINT = (0.8, 0.5, 0.2)
 DEPTH = 0.5
 THICKNESS = 0.7
 
-
-# Off the diagonals along which faces are split into triangles: where a ray meets such an edge to the last bit,
-# Cycles' own Glass too takes
-# the neighbouring triangle for another surface.
+# Off the diagonals along which faces are split into triangles: where a ray meets such an edge to the last bit, Cycles'
+# own Glass too takes the neighbouring triangle for another surface.
 AIM = (0.37, 0.11, 0.0)
 
 
@@ -51,16 +48,9 @@ def beer_lambert(distance: float) -> np.ndarray:
     return np.power(TINT, distance / DEPTH)
 
 
-def standard_error(picture: np.ndarray) -> np.ndarray:
-    pixels = picture.reshape(-1, 3)
-    return pixels.std(axis=0, ddof=1) / math.sqrt(len(pixels))
-
-
-def assert_mean(picture: np.ndarray, expected) -> None:
-    """The mean is as expected within 4 standard errors and rounding."""
-    mean = picture.reshape(-1, 3).mean(axis=0)
-    tolerance = 4.0 * standard_error(picture) + ROUNDING
-    assert np.all(np.abs(mean - expected) <= tolerance), f"{mean} instead of {expected} +- {tolerance}"
+def tinted(name: str, ior: float, **keywords) -> bpy.types.Material:
+    """A medium that absorbs as :func:`beer_lambert` says."""
+    return nd.new_material(name, ior=ior, transmittance=TINT, transmittance_depth=DEPTH, **keywords)
 
 
 @pytest.mark.parametrize("degrees", [0, 45, 80])
@@ -106,8 +96,8 @@ def test_a_slab_displaces_a_ray_as_snell_says():
     through = (1 - fresnel(degrees, 1, ior)) * (1 - fresnel(math.degrees(inside), ior, 1))
     picture = render(1024)
     # Of the two lobes at the entrance one is black, so a pixel is `arrives` times the share of samples that went
-    # through: divided by that
-    # share, which the ruler's constant green would give, position is left. Half a pixel is 6e-5.
+    # through: divided by that share, which the ruler's constant green would give, position is left. Half a pixel is
+    # 6e-5.
     assert np.abs(picture[..., 0].mean() / through - arrives) < 4 * standard_error(picture)[0] / through + 6e-5
 
 
@@ -134,10 +124,8 @@ def test_total_reflection_stays_when_internal_reflections_are_off():
 def test_absorption_follows_beer_lambert(degrees):
     new_scene(16)
     set_half_world(2, -1)
-    tinted = nd.new_material(
-        "Tinted", ior=1.5, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False
-    )
-    add_box("Slab", (-10, -10, -THICKNESS), (10, 10, 0), tinted)
+    slab = tinted("Tinted", 1.5, internal_reflections=False)
+    add_box("Slab", (-10, -10, -THICKNESS), (10, 10, 0), slab)
     aim_camera(degrees)
     inside = math.degrees(math.asin(math.sin(math.radians(degrees)) / 1.5))
     through = (1 - fresnel(degrees, 1, 1.5)) * (1 - fresnel(inside, 1.5, 1))
@@ -147,9 +135,7 @@ def test_absorption_follows_beer_lambert(degrees):
 def test_light_that_crosses_ice_is_not_tinted_by_the_water_around_it():
     new_scene(16)
     set_half_world(2, -1)
-    water = nd.new_material(
-        "Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False
-    )
+    water = tinted("Water", 1.33, internal_reflections=False)
     ice = nd.new_material("Ice", ior=1.31, internal_reflections=False)
     add_box("Water", (-10, -10, -2.0), (10, 10, 0), water, priority=2)
     add_box("Ice", (-40, -40, -1.5), (40, 40, -0.5), ice, priority=1)
@@ -162,11 +148,9 @@ def test_light_that_crosses_ice_is_not_tinted_by_the_water_around_it():
 def test_an_object_in_the_drink_is_seen_through_what_lies_before_it(roughness):
     new_scene(16)
     set_world((0, 0, 0))
-    water = nd.new_material(
+    water = tinted(
         "Water",
-        ior=1.33,
-        transmittance=TINT,
-        transmittance_depth=DEPTH,
+        1.33,
         internal_reflections=False,
         roughness=roughness,
         distribution="GGX",
@@ -181,11 +165,9 @@ def test_an_object_in_the_drink_is_seen_through_what_lies_before_it(roughness):
 def test_an_object_in_the_drink_is_lit_through_what_lies_above_it():
     new_scene(16)
     set_world((0, 0, 0))
-    water = nd.new_material(
+    water = tinted(
         "Water",
-        ior=1.33,
-        transmittance=TINT,
-        transmittance_depth=DEPTH,
+        1.33,
         internal_reflections=False,
         shadow_mode="TRANSMISSION",
     )
@@ -201,9 +183,7 @@ def test_a_camera_in_the_drink_sees_what_the_way_leaves():
     """Straight at an object in the same medium, and out through the surface."""
     new_scene(16)
     set_half_world(2, -1)
-    water = nd.new_material(
-        "Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH, internal_reflections=False
-    )
+    water = tinted("Water", 1.33, internal_reflections=False)
     add_box("Water", (-10, -10, -1.1), (10, 10, 10), water)
     x, y, _ = AIM
     add_camera((x, y, 0), (x, y, -1), width=0.01)
@@ -219,7 +199,7 @@ def test_light_from_one_object_in_the_drink_to_another_is_absorbed_on_its_way():
     new_scene(16)
     set_world((0, 0, 0))
     height = 0.5
-    water = nd.new_material("Water", ior=1.33, transmittance=TINT, transmittance_depth=DEPTH)
+    water = tinted("Water", 1.33)
     add_box("Water", (-300, -300, -1), (300, 300, 2), water)
     add_plane("Floor", 400, (0, 0, 0), (0, 0, 1), diffuse())
     glow = emission()
@@ -265,7 +245,7 @@ def add_lit_floor() -> None:
 def test_shadows_of_each_mode_have_the_closed_form(mode):
     new_scene(8)
     add_lit_floor()
-    glass = nd.new_material("Glass", ior=1.5, transmittance=TINT, transmittance_depth=DEPTH, shadow_mode=mode)
+    glass = tinted("Glass", 1.5, shadow_mode=mode)
     add_box("Slab", (-30, -30, 1), (30, 30, 1 + THICKNESS), glass)
     assert_mean(render(16), shadow_factor(mode))
 
@@ -273,18 +253,11 @@ def test_shadows_of_each_mode_have_the_closed_form(mode):
 def test_a_shadow_through_nested_media_takes_each_colour_over_its_own_way():
     new_scene(8)
     add_lit_floor()
-    water = nd.new_material("Water", ior=1.5, transmittance=TINT, transmittance_depth=DEPTH, shadow_mode="TRANSMISSION")
+    water = tinted("Water", 1.5, shadow_mode="TRANSMISSION")
     ice = nd.new_material("Ice", ior=1.31, shadow_mode="TRANSMISSION")
     add_box("Water", (-30, -30, 1), (30, 30, 2), water, priority=2)
     add_box("Ice", (-20, -20, 1.3), (20, 20, 1.6), ice, priority=1)
     assert_mean(render(16), beer_lambert(0.7 / math.cos(math.radians(SHADOW_ANGLE))))
-
-
-def add_emission_port(material, socket: str, strength: float) -> None:
-    tree = material.node_tree
-    shader = tree.nodes.new("ShaderNodeEmission")
-    shader.inputs["Strength"].default_value = strength
-    tree.links.new(shader.outputs[0], tree.nodes["Nested Dielectric"].inputs[socket])
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import pytest
 import nested_dielectric as nd
 from nested_dielectric import compatibility, node_group
 from nested_dielectric.checks import find_problems
-from scenes import add_box, add_camera, add_mesh, add_sphere, emission, new_scene, render, set_world
+from scenes import add_box, add_camera, add_emission_port, add_mesh, add_sphere, emission, new_scene, render, set_world
 
 
 def ball_in_furnace() -> bpy.types.Object:
@@ -204,9 +204,7 @@ def test_a_label_on_a_bottle_leaves_the_bottle_closed():
     top = max(bottle.data.polygons, key=lambda face: face.center.z)
     top.material_index = 1
     inner = nd.new_material("Water", preset="water")
-    tree = inner.node_tree
-    glow = tree.nodes.new("ShaderNodeEmission")
-    tree.links.new(glow.outputs[0], tree.nodes["Nested Dielectric"].inputs["Emission at Interfaces"])
+    add_emission_port(inner, "Emission at Interfaces")
     add_box("Water", (-0.5, -0.5, -0.5), (0.5, 0.5, 0.5), inner, 2)
     add_camera((0.2, -4, 0.1), (0.2, 0, 0.1), width=0.1)
     hidden = render(16)

@@ -13,6 +13,7 @@ from scenes import (
     add_camera,
     add_plane,
     add_sphere,
+    assert_mean,
     assert_same_picture,
     batches,
     cycles_glass,
@@ -83,9 +84,7 @@ def test_a_normal_input_turns_the_surface():
     add_box("Block", (-10, -10, -10), (10, 10, 0), material)
     slope = math.radians(45)
     add_camera((0.37 + 3 * math.sin(slope), 0.11, 3 * math.cos(slope)), (0.37, 0.11, 0), width=0.01)
-    picture = render(1024)
-    error = picture.std() / math.sqrt(picture[..., 0].size)
-    assert abs(picture.mean() - fresnel(25, 1.0, 1.5)) < 4 * error + 2e-5
+    assert_mean(render(1024), fresnel(25, 1.0, 1.5))
 
 
 def reflected_glow(anisotropy: float, tangent: tuple[float, float, float]) -> np.ndarray:
@@ -172,10 +171,8 @@ def test_equal_priorities_are_one_medium():
     add_box("Upper", (-10, -10, -0.6), (10, 10, 0), tinted, 1)
     add_box("Lower", (-10.1, -10.1, -1.0), (10.1, 10.1, -0.4), tinted, 1)
     add_camera((0.37, 0.11, 3), (0.37, 0.11, 0), width=0.01)
-    picture = render(1024)
     expected = (1 - fresnel(0, 1, 1.5)) ** 2 * np.power((0.8, 0.5, 0.2), 1.0 / 0.5)
-    error = picture.reshape(-1, 3).std(axis=0) / math.sqrt(picture[..., 0].size)
-    assert np.all(np.abs(picture.mean(axis=(0, 1)) - expected) < 4 * error + 2e-5)
+    assert_mean(render(1024), expected)
 
 
 def test_a_material_that_is_not_ours_stays_foreign():
