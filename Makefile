@@ -2,6 +2,9 @@
 PYTHON := .venv/bin/python
 STAMP := .venv/.installed
 DIST := dist
+# The version stands in pyproject.toml; the manifest names the same file (a test compares them).
+COLOUR := $(shell sed -n 's/.*"colour-science==\([^"]*\)".*/\1/p' pyproject.toml)
+WHEEL := wheels/colour_science-$(COLOUR)-py3-none-any.whl
 # What "blender --command extension" runs, with its list of valid tags, without a Blender application.
 BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli import cli_extension_handler as run; sys.exit(run(sys.argv[1:]))'
 
@@ -13,10 +16,13 @@ demo: $(STAMP)
 test: $(STAMP)
 	$(PYTHON) -m pytest
 
-extension: $(STAMP)
+extension: $(STAMP) $(WHEEL)
 	@mkdir -p $(DIST)
 	$(BLENDER_EXTENSION) build --output-dir $(DIST)
 	$(BLENDER_EXTENSION) validate $(DIST)/nested_dielectric-0.1.0.zip
+
+$(WHEEL): | $(STAMP)
+	$(PYTHON) -m pip download --quiet --disable-pip-version-check --no-deps --only-binary :all: -d wheels colour-science==$(COLOUR)
 
 $(STAMP): pyproject.toml
 	@python=$$(python3.13 -c 'import sys; print(sys.executable)' 2>/dev/null \

@@ -8,10 +8,12 @@ Exit codes: 0 done, 1 failed, 2 wrong usage.
 from __future__ import annotations
 
 import argparse
+import io
 import sys
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from .compatibility import require_blender
 from .iced_water import build_scene
@@ -19,6 +21,8 @@ from .parameters import ParameterError
 from .preparation import prepare
 from .presets import load_preset, preset_names
 from .rendering import ProgressLine, render_frame
+from .spectra import DISTRIBUTIONS, GAMUTS, WAVELENGTHS, SpectrumError, plot, spectral_table
+from .working_space import working_gamut
 
 PROGRAM = "nested-dielectric"
 DEMO_OUTPUT = Path("out/iced_water.png")
@@ -36,7 +40,7 @@ def main(arguments: list[str] | None = None) -> int:
         return int(stop.code or 0)
     try:
         options.run(options)
-    except (_Failure, ParameterError, OSError, RuntimeError) as error:
+    except (_Failure, ParameterError, SpectrumError, OSError, RuntimeError) as error:
         print(f"{PROGRAM}: error: {' '.join(str(error).split())}", file=sys.stderr)
         return 1
     return 0
@@ -73,6 +77,30 @@ def _parser() -> argparse.ArgumentParser:
 
     presets = commands.add_parser("presets", help="list the presets", allow_abbrev=False)
     presets.set_defaults(run=_presets)
+
+    bake = commands.add_parser("bake", help="write the table that light is split into colours with", allow_abbrev=False)
+    bake.add_argument(
+        "--distribution",
+        default="DAYLIGHT",
+        help=f"{', '.join(choice.keyword for choice in DISTRIBUTIONS)}, a CIE illuminant such as FL11, or a CSV file "
+        "of wavelength (nm) and power (default: DAYLIGHT)",
+    )
+    bake.add_argument(
+        "--gamut",
+        type=str.upper,
+        choices=[choice.keyword for choice in GAMUTS],
+        default="SCENE",
+        help="colour space of the colours (default: SCENE, the working space of the file that Blender has open)",
+    )
+    bake.add_argument("--saturation", type=float, default=1.0, help="0 (grey) to 1 (default)")
+    bake.add_argument(
+        "--keep-negative", action="store_true", help="keep the negative parts of colours outside the gamut"
+    )
+    bake.add_argument(
+        "-o", "--output", type=Path, required=True, metavar="TABLE.exr", help="picture to write, a pixel an entry"
+    )
+    bake.add_argument("--plot", type=Path, metavar="PLOT.png", help="also draw it; needs matplotlib")
+    bake.set_defaults(run=_bake)
     return parser
 
 
@@ -128,3 +156,57 @@ def _presets(options: argparse.Namespace) -> None:
     for key in preset_names():
         preset = load_preset(key)
         print(f"{key:12} {preset.parameters['ior']:<8} {preset.description}")
+
+
+def _bake(options: argparse.Namespace) -> None:
+    if options.output.suffix.lower() != ".exr":
+        raise _Failure(f"{options.output}: the ending must be .exr")
+    gamut = working_gamut() if options.gamut == "SCENE" else options.gamut
+    table = spectral_table(options.distribution, gamut, options.saturation, not options.keep_negative)
+    drawing = _draw(options.plot, options.distribution, table) if options.plot else None
+    metadata = {
+        "Software": PROGRAM,
+        "distribution": options.distribution,
+        "gamut": gamut,
+        "saturation": options.saturation,
+        "clamp_negative": int(not options.keep_negative),
+        "wavelength_range": f"{WAVELENGTHS[0]:g} to {WAVELENGTHS[1]:g} nm",
+        "rgb": "weights of scene-linear red, green and blue; their mean is white",
+        "alpha": "wavelength in nm",
+    }
+    _write_table(options.output, table, metadata)
+    written = f"{len(table)} entries in {gamut} to {options.output.resolve()}"
+    if drawing:
+        options.plot.parent.mkdir(parents=True, exist_ok=True)
+        options.plot.write_bytes(drawing)
+        written += f", and {options.plot.resolve()}"
+    print(f"wrote {written}")
+
+
+def _draw(path: Path, distribution: str, table: np.ndarray) -> bytes:
+    """The plot as a file of the format that the path's ending names."""
+    figure = plot(distribution, table)
+    formats = figure.canvas.get_supported_filetypes()
+    ending = path.suffix.lower().removeprefix(".")
+    if ending not in formats:
+        raise _Failure(f"{path}: the ending must be one of {', '.join(f'.{name}' for name in formats)}")
+    drawing = io.BytesIO()
+    figure.savefig(drawing, format=ending, dpi=120)
+    return drawing.getvalue()
+
+
+def _write_table(path: Path, table: np.ndarray, metadata: dict[str, str | float | int]) -> None:
+    bpy.utils.expose_bundled_modules()
+    import OpenImageIO as oiio  # Blender's own copy
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    picture = oiio.ImageSpec(len(table), 1, 4, oiio.FLOAT)
+    picture.channelnames = ("R", "G", "B", "A")
+    for name, value in metadata.items():
+        picture.attribute(name, value)
+    file = oiio.ImageOutput.create(str(path))
+    if file is None:
+        raise _Failure(f"{path}: cannot be written ({oiio.geterror()})")
+    done = file.open(str(path), picture) and file.write_image(table[None])
+    if not (file.close() and done):
+        raise _Failure(f"{path}: cannot be written ({file.geterror()})")

@@ -5,10 +5,13 @@ import sys
 from pathlib import Path
 
 import bpy
+import numpy as np
 import pytest
 
 import nested_dielectric as nd
-from scenes import add_camera, add_sphere, new_scene, read_picture, set_striped_world
+from nested_dielectric import cli
+from nested_dielectric.spectra import spectral_table
+from scenes import add_camera, add_sphere, new_scene, oiio, read_picture, set_striped_world
 
 
 def run(*arguments: object) -> subprocess.CompletedProcess:
@@ -86,8 +89,81 @@ def test_an_ending_without_a_format_is_named_before_anything_is_rendered(file, t
     assert_one_line(done.stderr, "picture.xyz", ".png")
 
 
+def test_bake_writes_the_table_what_it_is_and_a_plot(tmp_path):
+    output, plot = tmp_path / "new" / "table.exr", tmp_path / "drawn" / "plot.png"
+    done = run(
+        "bake", "--distribution", "fluorescent", "--gamut", "Rec2020", "--saturation", 0.5, "--keep-negative",
+        "-o", output, "--plot", plot,
+    )  # fmt: skip
+    assert done.returncode == 0 and done.stderr == "", done.stderr
+    said = done.stdout.splitlines()[-1]  # after Blender's own lines
+    assert all(word in said for word in ("4096 entries", "REC2020", str(output), str(plot)))
+    picture = oiio.ImageBuf(str(output))
+    assert picture.spec().channelnames == ("R", "G", "B", "A") and picture.spec().format == oiio.FLOAT
+    table = picture.get_pixels(oiio.FLOAT)
+    assert np.array_equal(table[0], spectral_table("FLUORESCENT", "REC2020", 0.5, False))
+    told = {attribute.name: attribute.value for attribute in picture.spec().extra_attribs}
+    assert told["distribution"] == "fluorescent" and told["gamut"] == "REC2020" and told["saturation"] == 0.5
+    assert told["clamp_negative"] == 0 and told["alpha"] == "wavelength in nm"
+    assert told["wavelength_range"] == "380 to 780 nm" and told["Software"] == "nested-dielectric"
+    drawn = read_picture(plot)
+    assert min(drawn.shape[:2]) > 400 and drawn.std() > 0.1
+
+
+def test_bake_takes_the_working_space_of_the_open_file_and_a_csv_file(tmp_path, capsys):
+    (tmp_path / "lamp.csv").write_text("nm,power\n400,1\n700,3\n")
+    new_scene()
+    bpy.ops.wm.set_working_color_space(convert_colors=False, working_space="ACEScg")
+    try:
+        capsys.readouterr()
+        arguments = ["bake", "--distribution", str(tmp_path / "lamp.csv"), "-o", str(tmp_path / "table.exr")]
+        assert cli.main(arguments) == 0
+        assert "ACESCG" in capsys.readouterr().out
+    finally:
+        new_scene()
+    table = oiio.ImageBuf(str(tmp_path / "table.exr")).get_pixels(oiio.FLOAT)
+    assert np.array_equal(table[0], spectral_table(tmp_path / "lamp.csv", "ACESCG"))
+
+
 @pytest.mark.parametrize(
-    "arguments", [(), ("rendr",), ("render",), ("render", "a.blend", "-o", "b.png", "--samples", "0")]
+    "arguments, words",
+    [
+        (("-o", "table.png"), ("table.png", ".exr")),
+        (("-o", "table"), ("table", ".exr")),
+        (("-o", "folder.exr"), ("folder.exr", "cannot be written")),
+        (("-o", "file/table.exr"), ("file",)),
+        (("-o", "table.exr", "--plot", "plot.xyz"), ("plot.xyz", ".png")),
+        (("-o", "table.exr", "--distribution", "DAYLITE"), ("DAYLITE", "DAYLIGHT")),
+        (("-o", "table.exr", "--saturation", "nan"), ("saturation", "0 to 1")),
+    ],
+)
+def test_bake_names_what_it_cannot_do_and_writes_nothing(arguments, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.exr").mkdir()
+    (tmp_path / "file").touch()
+    assert cli.main(["bake", *arguments]) == 1
+    assert_one_line(capsys.readouterr().err, *words)
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["file", "folder.exr"]
+
+
+def test_bake_without_matplotlib_says_so_before_anything_is_written(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)  # as in Blender's own Python
+    arguments = ["bake", "-o", str(tmp_path / "table.exr"), "--plot", str(tmp_path / "plot.png")]
+    assert cli.main(arguments) == 1
+    assert_one_line(capsys.readouterr().err, "matplotlib", "install")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        ("rendr",),
+        ("render",),
+        ("render", "a.blend", "-o", "b.png", "--samples", "0"),
+        ("bake",),
+        ("bake", "-o", "a.exr", "--gamut", "sRGB"),
+    ],
 )
 def test_wrong_usage_has_exit_code_2(arguments):
     assert run(*arguments).returncode == 2
