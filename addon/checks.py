@@ -11,7 +11,7 @@ from mathutils.bvhtree import BVHTree
 
 from . import meshes
 from .materials import dielectric_node, dielectrics, medium_material
-from .media import get_priority, media
+from .media import dispersing_materials, get_priority, media
 from .node_group import MATERIAL_SLOTS, SOURCE_HASH
 from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
 
@@ -47,6 +47,8 @@ def find_problems(scene: bpy.types.Scene) -> list[Problem]:
     for shape in shapes:
         problems += _mesh_problems(shape)
     problems += _overlap_problems(shapes)
+    if dispersing_materials(scene):
+        problems += _dispersion_problems(scene)
     return problems
 
 
@@ -157,6 +159,31 @@ def _mesh_problems(shape: _Shape) -> list[Problem]:
             )
         ]
     return []
+
+
+def _dispersion_problems(scene: bpy.types.Scene) -> list[Problem]:
+    """What else uses the portals and the motion blur that carry wavelengths."""
+    problems = [
+        Problem(
+            obj.name,
+            f"has a Ray Portal in material {slot.material.name!r}; light through it is taken for a single colour by media",
+            "remove it, or switch Disperse off in this scene",
+        )
+        for obj in scene.objects
+        for slot in obj.material_slots
+        if slot.material is not None and slot.material.node_tree is not None
+        if any(node.bl_idname == "ShaderNodeBsdfRayPortal" for node in slot.material.node_tree.nodes)
+    ]
+    problems += [
+        Problem(
+            layer.name,
+            "has a Vector pass, which Cycles leaves out with the motion blur that dispersion needs",
+            "render the pass with Disperse and motion blur off",
+        )
+        for layer in scene.view_layers
+        if layer.use_pass_vector
+    ]
+    return problems
 
 
 def _signature(obj: bpy.types.Object) -> tuple:

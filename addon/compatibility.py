@@ -53,6 +53,27 @@ def settings_problem(scene: bpy.types.Scene) -> str | None:
     return None
 
 
+def achromatic_reason(scene: bpy.types.Scene) -> str | None:
+    """Return why dispersing media of a scene would render without their colours, or None if they would not."""
+    if not scene.render.use_motion_blur:
+        return (
+            f"scene {scene.name!r} renders without motion blur, whose random time carries the wavelength of a path; media "
+            "look as they do at 587.6 nm. Press Prepare Scene, which switches it on with a shutter of 0, so that nothing blurs"
+        )
+    if scene.render.motion_blur_shutter == 0.0 and not _even_shutter(scene):
+        return (
+            f"scene {scene.name!r} has a shutter of 0 with a shutter curve or a rolling shutter, which favour some "
+            "wavelengths over others; press Prepare Scene"
+        )
+    return None
+
+
+def _even_shutter(scene: bpy.types.Scene) -> bool:
+    """Every moment is as likely as any other: the shutter curve is flat and nothing rolls."""
+    (curve,) = scene.render.motion_blur_shutter_curve.curves
+    return scene.cycles.rolling_shutter_type == "NONE" and len({point.location[1] for point in curve.points}) == 1
+
+
 def require_blender() -> None:
     """Raise :class:`UnsupportedError` if this Blender cannot render nested dielectrics."""
     problem = blender_problem()

@@ -6,10 +6,23 @@ from collections.abc import Iterator
 from typing import Any
 
 import bpy
+import numpy as np
 
 from . import node_group
-from .parameters import GROUP_NAME, PARAMETERS, Choice, Parameter, check_keywords
+from .dispersion import LINE_D, sellmeier_ior
+from .parameters import (
+    BY_KEYWORD,
+    GROUP_NAME,
+    SETTINGS,
+    SOCKETS,
+    Choice,
+    Parameter,
+    ParameterError,
+    check_keywords,
+)
 from .presets import load_preset
+from .spectra import SpectrumError, spectral_table
+from .working_space import working_gamut
 
 
 def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.types.Material:
@@ -17,7 +30,8 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
 
     :param name: name of the material; Blender numbers it if it is taken.
     :param preset: a name of :func:`preset_names` whose values are set first.
-    :param keywords: socket names in snake_case, such as ``ior=1.33``; enumerations are upper-case words.
+    :param keywords: socket names in snake_case, such as ``ior=1.33``; enumerations are upper-case words. With Sellmeier
+        coefficients and no ``ior`` the index is that of the coefficients.
     :raises ParameterError: for an unknown preset or keyword, or a value outside its limits. Nothing has been made then.
     """
     values: dict[Parameter, Any] = {}
@@ -27,6 +41,10 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
         description = f"{loaded.description} {loaded.source}"
         values.update(check_keywords(loaded.parameters))
     values.update(check_keywords(keywords))
+    if keywords.keys() & {"sellmeier_b", "sellmeier_c"} and "ior" not in keywords:
+        values[BY_KEYWORD["ior"]] = _sellmeier_index(values)
+    settings = {parameter: values.pop(parameter, parameter.check(parameter.default)) for parameter in SETTINGS}
+    table = _table(settings)
     group = node_group.ensure_group()
 
     material = bpy.data.materials.new(name)
@@ -47,6 +65,7 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
             tree.links.new(node.outputs[ours], output.inputs[theirs])
     for parameter, value in values.items():
         set_parameter(node, parameter, value)
+    _set_table(material, node, settings, table)
     material.use_transparent_shadow = True
     material.diffuse_color = (*node.inputs["Transmittance"].default_value[:3], 0.3)
     if description:
@@ -57,12 +76,112 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
 def set_parameter(node: bpy.types.ShaderNodeGroup, parameter: Parameter, value: Any) -> None:
     """Set the socket of a parameter to a checked value."""
     socket = node.inputs[parameter.name]
-    if isinstance(value, Choice):
+    if parameter.kind == "INDEX":
+        socket.default_value = parameter.choices.index(value)
+    elif isinstance(value, Choice):
         socket.default_value = value.name
     elif parameter.kind == "COLOR":
         socket.default_value = (*value, 1.0)
     else:
         socket.default_value = value
+
+
+def _sellmeier_index(values: dict[Parameter, Any]) -> float:
+    """Index of Sellmeier coefficients at the d line. Raises :class:`ParameterError` if they have none."""
+    b, c = (values.get(BY_KEYWORD[word], BY_KEYWORD[word].default) for word in ("sellmeier_b", "sellmeier_c"))
+    try:
+        return BY_KEYWORD["ior"].check(sellmeier_ior(b, c, LINE_D))
+    except ParameterError:
+        raise ParameterError(
+            f"sellmeier_b={b}, sellmeier_c={c}: these have no index of refraction at 587.56 nm; "
+            "C is the square of a wavelength in square micrometres"
+        ) from None
+
+
+def get_parameter(node: bpy.types.ShaderNodeGroup, parameter: Parameter) -> Any:
+    """Return the value of a parameter's socket as a keyword argument would have it."""
+    value = node.inputs[parameter.name].default_value
+    if parameter.kind == "INDEX":
+        return parameter.choices[min(max(value, 0), len(parameter.choices) - 1)].keyword
+    if parameter.kind == "MENU":
+        return next(choice.keyword for choice in parameter.choices if choice.name == value)
+    return tuple(value)[:3] if parameter.kind in ("COLOR", "VECTOR") else value
+
+
+def spectrum_settings(material: bpy.types.Material) -> dict[str, Any]:
+    """Return the keywords that a nested dielectric's spectral table is baked from."""
+    return {parameter.keyword: material.get(parameter.keyword, parameter.default) for parameter in SETTINGS}
+
+
+def set_spectrum(material: bpy.types.Material, **keywords: Any) -> None:
+    """Bake a spectral table for a nested dielectric from ``spectral_distribution``, ``spectral_gamut``,
+    ``spectral_saturation`` and ``clamp_negative``; what is not given stays.
+
+    The material's custom properties keep them, and the file keeps the table. Raises :class:`ParameterError` for a wrong
+    value or a file that cannot be read; nothing has changed then.
+    """
+    settings = check_keywords(spectrum_settings(material) | keywords)
+    unknown = settings.keys() - set(SETTINGS)
+    if unknown:
+        raise ParameterError(f"{unknown.pop().keyword} is a socket; set it in the node {GROUP_NAME!r}")
+    _set_table(material, dielectric_node(material), settings, _table(settings))
+
+
+def material_table(material: bpy.types.Material) -> np.ndarray | None:
+    """Return the spectral table that a nested dielectric renders with, or None if the file has lost it."""
+    node = dielectric_node(material)
+    tables = node.node_tree.nodes.get(node_group.TABLES_NODE)
+    image = None if tables is None else tables.image
+    if image is None or not len(image.pixels):
+        return None
+    rows = np.empty(len(image.pixels), dtype=np.float32)
+    image.pixels.foreach_get(rows)
+    rows = rows.reshape(image.size[1], image.size[0], -1)
+    return rows[min(node.inputs[node_group.TABLE_SOCKET].default_value, len(rows) - 1)]
+
+
+def refresh_spectrum(material: bpy.types.Material) -> bool:
+    """Bake a material's spectral table again if its settings, a file it was read from or the file's working space have
+    changed; tell whether they had. Raises :class:`ParameterError` as :func:`set_spectrum` does.
+    """
+    node = dielectric_node(material)
+    table = _table(check_keywords(spectrum_settings(material)))
+    stale = not node_group.uses_table(node, table)
+    if stale:
+        node_group.set_table(node, table)
+    return stale
+
+
+def may_disperse(material: bpy.types.Material) -> bool:
+    """Whether a nested dielectric splits light into colours, now or on some frame."""
+    socket = dielectric_node(material).inputs["Disperse"]
+    animation = material.node_tree.animation_data
+    return socket.default_value or socket.is_linked or animation is not None
+
+
+def _table(settings: dict[Parameter, Any]) -> np.ndarray:
+    """The spectral table of checked settings."""
+    distribution, gamut, saturation, clamped = (settings[parameter] for parameter in SETTINGS)
+    try:
+        resolved = working_gamut() if gamut.keyword == "SCENE" else gamut.keyword
+        return spectral_table(_absolute(distribution), resolved, saturation, clamped)
+    except SpectrumError as error:
+        raise ParameterError(f"spectral_distribution={distribution!r}: {error}") from None
+
+
+def _absolute(distribution: str) -> str:
+    return bpy.path.abspath(distribution) if distribution.startswith("//") else distribution
+
+
+def _set_table(
+    material: bpy.types.Material,
+    node: bpy.types.ShaderNodeGroup,
+    settings: dict[Parameter, Any],
+    table: np.ndarray,
+) -> None:
+    for parameter, value in settings.items():
+        material[parameter.keyword] = value.keyword if isinstance(value, Choice) else value
+    node_group.set_table(node, table)
 
 
 def dielectric_node(material: bpy.types.Material | None) -> bpy.types.ShaderNodeGroup | None:
@@ -73,7 +192,7 @@ def dielectric_node(material: bpy.types.Material | None) -> bpy.types.ShaderNode
     if node is None or node.type != "GROUP" or node.node_tree is None:
         return None
     names = {socket.name for socket in node.inputs}
-    return node if all(parameter.name in names for parameter in PARAMETERS) else None
+    return node if all(parameter.name in names for parameter in SOCKETS) else None
 
 
 def dielectrics(obj: bpy.types.Object) -> Iterator[tuple[int, bpy.types.Material]]:

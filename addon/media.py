@@ -9,7 +9,7 @@ from collections.abc import Iterable
 
 import bpy
 
-from .materials import dielectric_node, medium_material, preset_material
+from .materials import dielectric_node, dielectrics, may_disperse, medium_material, preset_material
 from .parameters import BY_KEYWORD, GROUP_NAME, MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
 
 
@@ -94,6 +94,12 @@ def media(scene: bpy.types.Scene) -> list[bpy.types.Object]:
             if obj.instance_collection is not None:
                 pending.append(obj.instance_collection)
     return winning_order(objects)
+
+
+def dispersing_materials(scene: bpy.types.Scene) -> list[bpy.types.Material]:
+    """Return the nested dielectrics of a scene that split light into colours, or are animated to."""
+    found = {material for obj in media(scene) for _, material in dielectrics(obj)}
+    return sorted(filter(may_disperse, found), key=lambda material: material.name_full)
 
 
 def winning_order(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
+from dataclasses import dataclass
 from functools import partial
 from math import e
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from .compatibility import UnsupportedError
-from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PARAMETERS, PRIORITY_PROPERTY, Parameter
+from .dispersion import mean_cauchy_distances
+from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS, Parameter
 from .shader_source import inlined_source
+from .spectral_images import TABLES, digest, ensure_row
 
 SHADER_FILE = "nested_dielectric.osl"
+COORDINATE_FILE = "spectral_coordinate.osl"
 MATERIAL_SLOTS = 8
 """As in osl/medium.h: slots of an object in which neighbours look for its dielectric."""
 
@@ -22,6 +27,11 @@ CYCLES_OUTPUT = "Surface"
 VOLUME_OUTPUT = "Volume"
 PREVIEW_OUTPUT = "Preview"
 SOURCE_HASH = "nd_source"
+
+TABLE_SOCKET = "Spectral Table"
+MEANS_SOCKET = "Spectral Table Means"
+TABLES_NODE = "Spectral Tables"
+COORDINATE_NODE = "Spectral Coordinate"
 
 LEAST_PREVIEW_IOR = 1.2
 """Keeps bubbles, whose index is that of air, in sight in EEVEE."""
@@ -33,6 +43,7 @@ _SOCKET_TYPES = {
     "COLOR": "NodeSocketColor",
     "VECTOR": "NodeSocketVector",
     "MENU": "NodeSocketMenu",
+    "INDEX": "NodeSocketInt",
     "SHADER": "NodeSocketShader",
 }
 
@@ -44,27 +55,57 @@ def ensure_group() -> bpy.types.NodeTree:
     use it. Raises :class:`~nested_dielectric.compatibility.UnsupportedError` when this Blender compiles no OSL; nothing
     has been made then.
     """
-    source = inlined_source(SHADER_FILE)
-    digest = hashlib.sha256(f"{source}{PARAMETERS}".encode()).hexdigest()
+    sources = {name: inlined_source(name) for name in (SHADER_FILE, COORDINATE_FILE)}
+    version = hashlib.sha256(f"{sources}{SOCKETS}".encode()).hexdigest()
     for tree in bpy.data.node_groups:
-        if tree.get(SOURCE_HASH) == digest and tree.library is None:
+        if tree.get(SOURCE_HASH) == version and tree.library is None:
             return tree
-    bytecode = compiled(source)
+    scripts = {name: _Script(name, source, compiled(source)) for name, source in sources.items()}
     tree = bpy.data.node_groups.new(GROUP_NAME, "ShaderNodeTree")
-    tree[SOURCE_HASH] = digest
+    tree[SOURCE_HASH] = version
     tree.description = "A dielectric that knows the media it touches"
     _add_sockets(tree)
-    _add_nodes(tree, _shader_text(source), bytecode)
+    _add_nodes(tree, scripts)
     return tree
 
 
-def _shader_text(source: str) -> bpy.types.Text:
-    for text in bpy.data.texts:
-        if text.name.startswith(SHADER_FILE) and text.as_string() == source:
-            return text
-    text = bpy.data.texts.new(SHADER_FILE)
-    text.from_string(source)
-    return text
+@dataclass(frozen=True)
+class _Script:
+    """A shader's file name, source and bytecode."""
+
+    name: str
+    source: str
+    bytecode: str
+
+    def text(self) -> bpy.types.Text:
+        """The source as a text of this file, made on first use."""
+        for text in bpy.data.texts:
+            if text.name.startswith(self.name) and text.as_string() == self.source:
+                return text
+        text = bpy.data.texts.new(self.name)
+        text.from_string(self.source)
+        return text
+
+
+def table_row(tree: bpy.types.NodeTree, table: np.ndarray) -> int:
+    """Return the row of a spectral table in the group's image, where it is put on first use."""
+    node = tree.nodes[TABLES_NODE]
+    node.image, row = ensure_row(node.image, table)
+    tree.nodes[COORDINATE_NODE].inputs["Tables"].default_value = node.image.size[1]
+    return row
+
+
+def uses_table(node: bpy.types.ShaderNodeGroup, table: np.ndarray) -> bool:
+    """Whether a material's group node uses this very spectral table."""
+    image = node.node_tree.nodes[TABLES_NODE].image
+    row = node.inputs[TABLE_SOCKET].default_value
+    return image is not None and row < len(image[TABLES]) and image[TABLES][row] == digest(table)
+
+
+def set_table(node: bpy.types.ShaderNodeGroup, table: np.ndarray) -> None:
+    """Make a material's group node use a spectral table."""
+    node.inputs[TABLE_SOCKET].default_value = table_row(node.node_tree, table)
+    node.inputs[MEANS_SOCKET].default_value = mean_cauchy_distances(table)
 
 
 def _add_sockets(tree: bpy.types.NodeTree) -> None:
@@ -82,7 +123,7 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
         PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="A stand-in for EEVEE"
     )
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
-    for parameter in PARAMETERS:
+    for parameter in SOCKETS:
         if parameter.panel not in panels:
             panels[parameter.panel] = interface.new_panel(parameter.panel, default_closed=bool(panels))
         socket = interface.new_socket(
@@ -93,6 +134,22 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
             description=parameter.description,
         )
         _set_limits(socket, parameter)
+    table = interface.new_socket(
+        TABLE_SOCKET,
+        in_out="INPUT",
+        socket_type="NodeSocketInt",
+        parent=panels["Dispersion"],
+        description="Row of the material's spectral table among this file's; set by the Spectrum in the sidebar",
+    )
+    table.min_value = 0
+    means = interface.new_socket(
+        MEANS_SOCKET,
+        in_out="INPUT",
+        socket_type="NodeSocketVector",
+        parent=panels["Dispersion"],
+        description="Where red, green and blue of that table have their mean index of refraction; set with it",
+    )
+    table.hide_value = means.hide_value = True
 
 
 def _set_limits(socket: bpy.types.NodeTreeInterfaceSocket, parameter: Parameter) -> None:
@@ -105,35 +162,52 @@ def _set_limits(socket: bpy.types.NodeTreeInterfaceSocket, parameter: Parameter)
         socket.default_value = parameter.default
     elif parameter.kind == "COLOR":
         socket.default_value = (*parameter.default, 1.0)
-    elif parameter.kind == "VECTOR":
+    elif parameter.kind == "INDEX":
+        words = [choice.keyword for choice in parameter.choices]
+        socket.min_value, socket.max_value = 0, len(words) - 1
+        socket.default_value = words.index(parameter.default)
+    elif parameter.kind == "VECTOR" and parameter.unit == "DIRECTION":
         socket.subtype = parameter.unit
         socket.hide_value = True
+    elif parameter.kind == "VECTOR":
+        socket.min_value = parameter.minimum
+        socket.max_value = parameter.maximum
+        socket.default_value = parameter.default
 
 
-def _add_nodes(tree: bpy.types.NodeTree, text: bpy.types.Text, bytecode: str) -> None:
+def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
     nodes, links = tree.nodes, tree.links
     inputs = nodes.new("NodeGroupInput")
     outputs = nodes.new("NodeGroupOutput")
-    script = nodes.new("ShaderNodeScript")
-    script.name = script.label = "Nested Dielectric Shader"
-    _load_script(script, text, bytecode)
+    kinds = {
+        parameter.osl_name: "INT" if parameter.kind in ("MENU", "BOOL") else parameter.kind for parameter in SOCKETS
+    }
+    kinds |= {"Requests": "COLOR", "Table": "INT", "TableMeans": "VECTOR", "Weight": "COLOR", "Wavelength": "FLOAT"}
+    script = _add_script(
+        tree, "Nested Dielectric Shader", scripts[SHADER_FILE], kinds, {"BSDF": "SHADER", "Running": "FLOAT"}
+    )
 
-    for parameter in PARAMETERS:
+    for parameter in SOCKETS:
         source = inputs.outputs[parameter.name]
         if parameter.kind == "MENU":
             source = _menu(tree, source, parameter)
         links.new(source, script.inputs[parameter.osl_name])
     links.new(_requests(tree), script.inputs["Requests"])
+    table = inputs.outputs[TABLE_SOCKET]
+    tables = _spectral_tables(tree, table, scripts[COORDINATE_FILE])
+    links.new(table, script.inputs["Table"])
+    links.new(inputs.outputs[MEANS_SOCKET], script.inputs["TableMeans"])
+    links.new(tables.outputs["Color"], script.inputs["Weight"])
+    links.new(tables.outputs["Alpha"], script.inputs["Wavelength"])
 
     # Not an emitter: Cycles would take every glass for a lamp and spend light samples on it.
     alarm = nodes.new("ShaderNodeBsdfDiffuse")
     alarm.inputs["Color"].default_value = (1.0, 0.0, 1.0, 1.0)
-    running = nodes.new("ShaderNodeMixShader")
+    # Cycles counts portals only if it finds a Ray Portal node; this one never has any weight.
+    counted = _mix(tree, script.outputs["Running"], alarm.outputs[0], nodes.new("ShaderNodeBsdfRayPortal").outputs[0])
+    counted.label = "Makes Cycles count portals"
+    running = _mix(tree, script.outputs["Running"], counted.outputs[0], script.outputs["BSDF"])
     running.label = "Magenta where OSL or its ray tracing does not run"
-    running.inputs[0].default_value = 0.0
-    links.new(script.outputs["Running"], running.inputs[0])
-    links.new(alarm.outputs[0], running.inputs[1])
-    links.new(script.outputs["BSDF"], running.inputs[2])
     links.new(running.outputs[0], outputs.inputs[CYCLES_OUTPUT])
 
     links.new(_absorption(tree, inputs), outputs.inputs[VOLUME_OUTPUT])
@@ -142,22 +216,52 @@ def _add_nodes(tree: bpy.types.NodeTree, text: bpy.types.Text, bytecode: str) ->
     _arrange(tree)
 
 
-def _load_script(script: bpy.types.ShaderNodeScript, text: bpy.types.Text, bytecode: str) -> None:
-    """Put the compiled shader into the node, where it stays with the file, and give the node its sockets.
+def _add_script(
+    tree: bpy.types.NodeTree, name: str, script: _Script, inputs: dict[str, str], outputs: dict[str, str]
+) -> bpy.types.ShaderNodeScript:
+    """A Script node with the compiled shader in it, where it stays with the file, and with its sockets.
 
-    Cycles does both by itself when the scene's engine is Cycles and its own helper modules can be imported; under the
+    Cycles adds both by itself when the scene's engine is Cycles and its own helper modules can be imported; under the
     wheel or another engine it does neither.
     """
-    script.mode = "INTERNAL"
-    script.script = text
-    script.bytecode = bytecode
-    script.bytecode_hash = hashlib.md5(bytecode.encode(), usedforsecurity=False).hexdigest()
-    for parameter in PARAMETERS:
-        kind = "INT" if parameter.kind in ("MENU", "BOOL") else parameter.kind
-        _ensure_socket(script.inputs, kind, parameter.osl_name)
-    _ensure_socket(script.inputs, "COLOR", "Requests")
-    _ensure_socket(script.outputs, "SHADER", "BSDF")
-    _ensure_socket(script.outputs, "FLOAT", "Running")
+    node = tree.nodes.new("ShaderNodeScript")
+    node.name = node.label = name
+    node.mode = "INTERNAL"
+    node.script = script.text()
+    node.bytecode = script.bytecode
+    node.bytecode_hash = hashlib.md5(script.bytecode.encode(), usedforsecurity=False).hexdigest()
+    for sockets, kinds in ((node.inputs, inputs), (node.outputs, outputs)):
+        for socket, kind in kinds.items():
+            _ensure_socket(sockets, kind, socket)
+    return node
+
+
+def _spectral_tables(
+    tree: bpy.types.NodeTree, table: bpy.types.NodeSocket, script: _Script
+) -> bpy.types.ShaderNodeTexImage:
+    """The image of spectral tables, read where the path's wavelength stands in it.
+
+    Linear interpolation makes the spectrum continuous and keeps every table's mean, because the edges are extended.
+    """
+    nodes, links = tree.nodes, tree.links
+    shutter = nodes.new("ShaderNodeAttribute")
+    shutter.attribute_type = "VIEW_LAYER"
+    shutter.attribute_name = "render.motion_blur_shutter"
+    coordinate = _add_script(
+        tree,
+        COORDINATE_NODE,
+        script,
+        {"Table": "INT", "Tables": "INT", "Shutter": "COLOR"},
+        {"Coordinate": "VECTOR"},
+    )
+    links.new(table, coordinate.inputs["Table"])
+    links.new(shutter.outputs["Color"], coordinate.inputs["Shutter"])
+    image = nodes.new("ShaderNodeTexImage")
+    image.name = image.label = TABLES_NODE
+    image.interpolation = "Linear"
+    image.extension = "EXTEND"
+    links.new(coordinate.outputs["Coordinate"], image.inputs["Vector"])
+    return image
 
 
 def _ensure_socket(sockets: bpy.types.NodeInputs, kind: str, name: str) -> None:
@@ -192,6 +296,17 @@ def _math(tree: bpy.types.NodeTree, operation: str, *operands: bpy.types.NodeSoc
     return node.outputs[0]
 
 
+def _mix(
+    tree: bpy.types.NodeTree, factor: bpy.types.NodeSocket, first: bpy.types.NodeSocket, second: bpy.types.NodeSocket
+) -> bpy.types.ShaderNodeMixShader:
+    """A Mix Shader that shows the first shader where nothing drives its factor."""
+    mix = tree.nodes.new("ShaderNodeMixShader")
+    mix.inputs[0].default_value = 0.0
+    for source, socket in zip((factor, first, second), mix.inputs):
+        tree.links.new(source, socket)
+    return mix
+
+
 def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
     """A look for EEVEE: clear, with reflections towards the edges, so that what stands in a medium stays in sight.
 
@@ -209,11 +324,7 @@ def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.Node
     gloss = nodes.new("ShaderNodeBsdfAnisotropic")
     gloss.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     links.new(inputs.outputs["Roughness"], gloss.inputs["Roughness"])
-    mix = nodes.new("ShaderNodeMixShader")
-    links.new(reflectance, mix.inputs[0])
-    links.new(clear.outputs[0], mix.inputs[1])
-    links.new(gloss.outputs[0], mix.inputs[2])
-    return mix.outputs[0]
+    return _mix(tree, reflectance, clear.outputs[0], gloss.outputs[0]).outputs[0]
 
 
 def _absorption(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
@@ -302,8 +413,10 @@ def _arrange(tree: bpy.types.NodeTree) -> None:
         "ShaderNodeBsdfDiffuse": 2,
         "ShaderNodeLayerWeight": 1,
         "ShaderNodeBsdfTransparent": 2,
+        "ShaderNodeBsdfRayPortal": 2,
         "ShaderNodeBsdfAnisotropic": 2,
         "ShaderNodeScript": 2,
+        "ShaderNodeTexImage": 1,
         "ShaderNodeSeparateColor": 1,
         "ShaderNodeLightPath": 1,
         "ShaderNodeMath": 2,

@@ -2,6 +2,8 @@
 
 Sockets of the node group, keyword arguments of :func:`nested_dielectric.new_material`, the names a preset file may
 use, the inputs of the OSL shader and the manual's table all come from :data:`PARAMETERS`.
+
+A spectral table is baked from the parameters of the panel `Spectrum`, so these are settings of a material and no sockets.
 """
 
 from __future__ import annotations
@@ -9,6 +11,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
+
+from . import spectra
+from .choice import Choice
 
 GROUP_NAME = "Nested Dielectric"
 """Name of the node group and of the group node in a material; the shader reads neighbours' sockets by it."""
@@ -24,20 +29,11 @@ class ParameterError(ValueError):
 
 
 @dataclass(frozen=True)
-class Choice:
-    """One word of an enumeration: its keyword, its name in menus and what it means."""
-
-    keyword: str
-    name: str
-    description: str
-
-
-@dataclass(frozen=True)
 class Parameter:
     """One parameter of the material.
 
-    ``kind`` is one of ``INT``, ``FLOAT``, ``BOOL``, ``COLOR`` (scene-linear RGB), ``VECTOR``, ``MENU`` and ``SHADER``;
-    ``minimum`` and ``maximum`` are hard limits, ``unit`` the subtype of the socket (``FACTOR``, ``DISTANCE``,
+    ``kind`` is one of ``INT``, ``FLOAT``, ``BOOL``, ``COLOR`` (scene-linear RGB), ``VECTOR``, ``MENU``, ``INDEX`` (a word
+    in Python, its place among the choices in the socket: neighbours cannot read menus), ``TEXT`` and ``SHADER``; ``minimum`` and ``maximum`` are hard limits, ``unit`` the subtype of the socket (``FACTOR``, ``DISTANCE``,
     ``WAVELENGTH``, ``DIRECTION`` or empty).
     """
 
@@ -110,6 +106,12 @@ def _choice(parameter: Parameter, value: Any) -> Choice:
     raise ParameterError(f"{parameter.keyword}={value!r}: one of {words} is needed")
 
 
+def _text(parameter: Parameter, value: Any) -> str:
+    if not isinstance(value, str) or not value:
+        raise ParameterError(f"{parameter.keyword}={value!r}: a word or the path of a file is needed")
+    return value
+
+
 def _shader(parameter: Parameter, value: Any) -> None:
     raise ParameterError(f"{parameter.keyword} is a Shader socket: link a shader node to '{parameter.name}' instead")
 
@@ -121,6 +123,8 @@ _CHECKS = {
     "COLOR": _triple,
     "VECTOR": _triple,
     "MENU": _choice,
+    "INDEX": _choice,
+    "TEXT": _text,
     "SHADER": _shader,
 }
 
@@ -147,6 +151,14 @@ DISTRIBUTIONS = (
     Choice("BECKMANN", "Beckmann", "A narrower lobe with shorter tails"),
 )
 
+DISPERSION_MODELS = (
+    Choice("ABBE", "Abbe", "Cauchy's two terms, from the index and the Abbe number"),
+    Choice("SELLMEIER", "Sellmeier", "Three terms, as most measured curves are published"),
+    Choice("JF", "JF", "The spread of JF Nested Dielectric, for scenes that come from there"),
+)
+
+SPECTRUM_PANEL = "Spectrum"
+
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "Priority",
@@ -163,7 +175,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Medium",
         "FLOAT",
         1.33,
-        "Index of refraction against vacuum. Keep it unlinked: neighbours read its value",
+        "Index of refraction against vacuum, at 587.56 nm. Keep it unlinked: neighbours read its value",
         0.01,
         100.0,
     ),
@@ -185,6 +197,58 @@ PARAMETERS: tuple[Parameter, ...] = (
         0.0,
         1e6,
         "DISTANCE",
+    ),
+    Parameter(
+        "Disperse",
+        "Dispersion",
+        "BOOL",
+        False,
+        "Light that enters or leaves this medium is split into its colours. Colours that are split already are bent by every "
+        "medium's own dispersion, with or without this",
+    ),
+    Parameter(
+        "Dispersion Model",
+        "Dispersion",
+        "INDEX",
+        "ABBE",
+        "How the index of refraction changes with the wavelength (in the node: 0 Abbe, 1 Sellmeier, 2 JF)",
+        choices=DISPERSION_MODELS,
+    ),
+    Parameter(
+        "Abbe",
+        "Dispersion",
+        "FLOAT",
+        55.0,
+        "Abbe number V_d of the Abbe model: the lower, the wider the colours spread; 0 is no dispersion",
+        0.0,
+        1e6,
+    ),
+    Parameter(
+        "Sellmeier B",
+        "Dispersion",
+        "VECTOR",
+        (1.03961212, 0.231792344, 1.01046945),
+        "Strengths of the Sellmeier model's three terms. The curve is shifted to go through IOR",
+        -1e4,
+        1e4,
+    ),
+    Parameter(
+        "Sellmeier C",
+        "Dispersion",
+        "VECTOR",
+        (0.00600069867, 0.0200179144, 103.560653),
+        "Squares of the Sellmeier model's three resonances, in square micrometres",
+        0.0,
+        1e6,
+    ),
+    Parameter(
+        "Dispersion",
+        "Dispersion",
+        "FLOAT",
+        0.03,
+        "Spread of the JF model: the index at 370 nm above that at 780 nm",
+        -10.0,
+        10.0,
     ),
     Parameter(
         "Roughness",
@@ -284,11 +348,56 @@ PARAMETERS: tuple[Parameter, ...] = (
     ),
     Parameter("Emission at Entrances", "Emission", "SHADER", None, "Shader added where a ray enters a medium from air"),
     Parameter("Emission at Exits", "Emission", "SHADER", None, "Shader added where a ray leaves all media into air"),
+    Parameter(
+        "Spectral Distribution",
+        SPECTRUM_PANEL,
+        "TEXT",
+        "DAYLIGHT",
+        "Light that is split into colours; its mix is always white: a word of the list below, a CIE illuminant such as `FL11`, or a "
+        "CSV file of wavelength (nm) and power",
+    ),
+    Parameter(
+        "Spectral Gamut",
+        SPECTRUM_PANEL,
+        "MENU",
+        "SCENE",
+        "Colour space of the split colours",
+        choices=spectra.GAMUTS,
+    ),
+    Parameter(
+        "Spectral Saturation",
+        SPECTRUM_PANEL,
+        "FLOAT",
+        1.0,
+        "Mixes the split colours to greys of their luminance, before negative ones are clamped",
+        0.0,
+        1.0,
+        "FACTOR",
+    ),
+    Parameter(
+        "Clamp Negative",
+        SPECTRUM_PANEL,
+        "BOOL",
+        True,
+        "Cuts off the negative parts of split colours that lie outside the gamut; off, they reach the image",
+    ),
 )
 
 BY_KEYWORD = {parameter.keyword: parameter for parameter in PARAMETERS}
 
-NEIGHBOUR_PARAMETERS = ("Priority", "IOR", "Transmittance", "Transmittance Depth")
+SOCKETS = tuple(parameter for parameter in PARAMETERS if parameter.panel != SPECTRUM_PANEL)
+"""Parameters that are sockets of the node group."""
+
+SETTINGS = tuple(parameter for parameter in PARAMETERS if parameter.panel == SPECTRUM_PANEL)
+"""Parameters that a spectral table is baked from."""
+
+NEIGHBOUR_PARAMETERS = (
+    "Priority",
+    "IOR",
+    "Transmittance",
+    "Transmittance Depth",
+    *(parameter.name for parameter in PARAMETERS if parameter.panel == "Dispersion"),
+)
 """Sockets whose values other media read while they render; a link into them is not seen by neighbours."""
 
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import bpy
 
 from .checks import Problem, find_problems
-from .compatibility import require_blender
+from .compatibility import achromatic_reason, require_blender
+from .materials import refresh_spectrum
+from .media import dispersing_materials
+from .parameters import ParameterError
 
 AT_LEAST = {
     "max_bounces": 64,
@@ -37,8 +41,9 @@ class Preparation:
 def prepare(scene: bpy.types.Scene) -> Preparation:
     """Set what a scene needs to render nested dielectrics, and look for problems with its media.
 
-    Cycles on the CPU with Open Shading Language, and enough bounces. Larger limits stay. A second
-    call changes nothing. Raises :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
+    Cycles on the CPU with Open Shading Language, and enough bounces; where a medium disperses, the motion blur that carries the
+    wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space. Larger limits stay.
+    A second call changes nothing. Raises :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
     """
     require_blender()
     changes: list[str] = []
@@ -55,4 +60,28 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     for attribute, least in AT_LEAST.items():
         label = scene.cycles.bl_rna.properties[attribute].name
         ensure(scene.cycles, attribute, max(least, getattr(scene.cycles, attribute)), label)
-    return Preparation(tuple(changes), tuple(find_problems(scene)))
+    problems = []
+    dispersing = dispersing_materials(scene)
+    if dispersing:
+        _ensure_random_time(scene, ensure, changes)
+    for material in dispersing:
+        try:
+            if refresh_spectrum(material):
+                changes.append(f"Spectral Table of {material.name}: baked again")
+        except ParameterError as error:
+            problems.append(Problem(material.name, f"keeps its old spectral table, because {error}", "choose another"))
+    return Preparation(tuple(changes), tuple(problems + find_problems(scene)))
+
+
+def _ensure_random_time(scene: bpy.types.Scene, ensure: Callable, changes: list[str]) -> None:
+    """Make Cycles draw a time for every path, evenly. Motion blur that is in use stays as it is."""
+    if not scene.render.use_motion_blur:
+        ensure(scene.render, "motion_blur_shutter", 0.0, "Shutter")
+        ensure(scene.render, "use_motion_blur", True, "Motion Blur")
+    if achromatic_reason(scene):
+        ensure(scene.cycles, "rolling_shutter_type", "NONE", "Rolling Shutter")
+        mapping = scene.render.motion_blur_shutter_curve
+        for point in mapping.curves[0].points:
+            point.location[1] = 1.0
+        mapping.update()
+        changes.append("Shutter Curve: flat")

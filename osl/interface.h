@@ -17,12 +17,12 @@ struct Interface {
  *
  * Both sides of a surface share the other media, seen from outside it. Entering, those are the media just before it,
  * leaving, those just behind it, so of two coincident faces one is valid and one is not whichever is met first. */
-Interface resolve_interface(Medium own)
+Interface resolve_interface(Medium own, int spectral, float wavelength)
 {
   /* The way through a medium that absorbs ends where another wins, so its priority counts even alone. */
   int known = absorbs(own);
   float priority = known ? shaded_priority(own.priority) : own.priority;
-  Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, priority, known);
+  Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, priority, known, spectral, wavelength);
   Medium inner = own;
   inner.priority = outer.own_priority;
   Interface s;

@@ -4,6 +4,8 @@
  * Air fills what no medium claims, so its priority is above every number an artist can give. */
 #pragma once
 
+#include "dispersion.h"
+
 #define AIR_PRIORITY 1e9
 
 /* Material slots an object's dielectric is looked for in when the face that was hit has another material. */
@@ -11,21 +13,23 @@
 
 struct Medium {
   float priority;
-  float ior;
+  Index ior;
+  int disperses;
   color transmittance;       /* colour that is left after transmittance_depth */
   float transmittance_depth; /* scene units */
 };
 
 Medium air()
 {
-  Medium m = {AIR_PRIORITY, 1.0, color(1.0), 1.0};
+  /* OSL does not initialise a struct within a struct by a list. */
+  Medium m;
+  m.priority = AIR_PRIORITY;
+  m.ior.at_path = m.ior.white = 1.0;
+  m.ior.slope = 0.0;
+  m.disperses = 0;
+  m.transmittance = color(1.0);
+  m.transmittance_depth = 1.0;
   return m;
-}
-
-/* An index of refraction that Snell's law can use, whatever the artist typed. A comparison with NaN is false. */
-float usable_ior(float ior)
-{
-  return (ior > 1e-3 && ior < 1e3) ? ior : 1.0;
 }
 
 int absorbs(Medium m)
@@ -84,8 +88,42 @@ float hit_priority(output int slot)
   return (value[3] > 0.0) ? value[0] : hit_slot(slot);
 }
 
+/* How the medium's index changes with the wavelength. What white light does not need is left out unless the render is spectral. */
+DispersionCurve hit_dispersion(int slot, int spectral)
+{
+  string models[MATERIAL_SLOTS] = SOCKETS("Dispersion Model");
+  string starts[MATERIAL_SLOTS] = SOCKETS("Disperse");
+  string numbers[MATERIAL_SLOTS] = SOCKETS("Abbe");
+  string strengths[MATERIAL_SLOTS] = SOCKETS("Sellmeier B");
+  string resonances[MATERIAL_SLOTS] = SOCKETS("Sellmeier C");
+  string spreads[MATERIAL_SLOTS] = SOCKETS("Dispersion");
+  DispersionCurve d = {0, 0, 0.0, vector(0.0), vector(0.0), 0.0};
+  float value[4];
+  getmessage("trace", models[slot], value);
+  d.model = (int)value[0];
+  if (spectral || d.model == DISPERSION_JF) {
+    getmessage("trace", starts[slot], value);
+    d.disperses = value[0] > 0.0;
+  }
+  if (d.model == DISPERSION_JF) {
+    getmessage("trace", spreads[slot], value);
+    d.spread = value[0];
+  }
+  else if (spectral && d.model == DISPERSION_SELLMEIER) {
+    getmessage("trace", strengths[slot], value);
+    d.sellmeier_b = vector(value[0], value[1], value[2]);
+    getmessage("trace", resonances[slot], value);
+    d.sellmeier_c = vector(value[0], value[1], value[2]);
+  }
+  else if (spectral) {
+    getmessage("trace", numbers[slot], value);
+    d.abbe = value[0];
+  }
+  return d;
+}
+
 /* All of the medium that was hit last, of which hit_priority() told the priority and the slot. */
-Medium hit_medium(float priority, int known_slot)
+Medium hit_medium(float priority, int known_slot, int spectral, float wavelength)
 {
   string iors[MATERIAL_SLOTS] = SOCKETS("IOR");
   string transmittances[MATERIAL_SLOTS] = SOCKETS("Transmittance");
@@ -98,7 +136,9 @@ Medium hit_medium(float priority, int known_slot)
   if (slot >= 0) {
     float value[4];
     getmessage("trace", iors[slot], value);
-    m.ior = usable_ior(value[0]);
+    DispersionCurve d = hit_dispersion(slot, spectral);
+    m.ior = medium_index(value[0], d, spectral, wavelength);
+    m.disperses = d.disperses;
     getmessage("trace", transmittances[slot], value);
     m.transmittance = clamp(color(value[0], value[1], value[2]), color(0.0), color(1.0));
     getmessage("trace", depths[slot], value);

@@ -53,7 +53,8 @@ struct Surroundings {
  *
  * own_priority is the material's until an object's own is asked for, which a surface that meets no other medium never
  * needs; own_is_known tells that it has been. */
-Surroundings probe_surroundings(point origin, vector direction, float own_priority, int own_is_known)
+Surroundings probe_surroundings(
+    point origin, vector direction, float own_priority, int own_is_known, int spectral, float wavelength)
 {
   float level[PROBE_LEVELS];
   int sum[PROBE_LEVELS];
@@ -99,7 +100,7 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
     }
     sum[k] += hit_crossing(direction);
     if (sum[k] > 0 && priority < s.medium.priority) {
-      s.medium = hit_medium(priority, slot);
+      s.medium = hit_medium(priority, slot, spectral, wavelength);
       if (priority <= s.own_priority)
         return s;
     }

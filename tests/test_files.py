@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 
 import nested_dielectric as nd
+from nested_dielectric.materials import set_spectrum
 from scenes import add_camera, add_sphere, new_scene, read_picture, render, set_striped_world
 
 RENDER = """
@@ -42,6 +43,11 @@ def add_content() -> None:
 
 def test_a_saved_file_renders_bit_for_bit_the_same_without_the_extension(tmp_path):
     build_scene()
+    for name, light in (("Glass", "DAYLIGHT"), ("Water", "FL2")):
+        node = bpy.data.materials[name].node_tree.nodes["Nested Dielectric"]
+        node.inputs["Disperse"].default_value = True
+        set_spectrum(bpy.data.materials[name], spectral_distribution=light, clamp_negative=False)
+    nd.prepare(bpy.context.scene)
     file = tmp_path / "scene.blend"
     bpy.context.scene.cycles.samples = 16
     bpy.ops.wm.save_as_mainfile(filepath=str(file))
@@ -49,6 +55,7 @@ def test_a_saved_file_renders_bit_for_bit_the_same_without_the_extension(tmp_pat
     missing = render_in_fresh_process(WITHOUT_EXTENSION, file, tmp_path / "farm.exr")
     assert np.array_equal(installed, missing)
     assert abs(missing.mean() / render(16).mean() - 1.0) < 1e-3
+    assert missing.std(axis=2).mean() > 0.01, "no colours"
 
 
 def test_a_material_made_under_another_engine_renders_the_same():

@@ -3,11 +3,14 @@
 from pathlib import Path
 
 import bpy
+import numpy as np
 import pytest
 
 import nested_dielectric as nd
 from nested_dielectric import media, parameters, presets, shader_source
-from scenes import add, add_box, add_sphere, new_scene
+from nested_dielectric.materials import material_table
+from nested_dielectric.spectra import spectral_table
+from scenes import add, add_box, add_sphere, native, new_scene
 
 ROOT = Path(__file__).resolve().parent.parent
 
@@ -29,16 +32,17 @@ def test_keywords_are_socket_names_in_snake_case():
 
 def test_a_preset_is_set_first_and_keywords_override_it():
     material = nd.new_material("Water", preset="water", roughness=0.25)
-    assert socket(material, "IOR") == pytest.approx(1.3334)
+    assert socket(material, "IOR") == pytest.approx(1.3334, abs=1e-5)
     assert socket(material, "Roughness") == 0.25
     assert socket(nd.new_material("Heavy", preset="water", ior=1.4), "IOR") == pytest.approx(1.4)
 
 
-@pytest.mark.parametrize("keyword", ["shadow_mode", "distribution"])
+@pytest.mark.parametrize("keyword", ["shadow_mode", "distribution", "dispersion_model"])
 def test_enumerations_are_upper_case_words(keyword):
-    for choice in parameters.BY_KEYWORD[keyword].choices:
+    parameter = parameters.BY_KEYWORD[keyword]
+    for place, choice in enumerate(parameter.choices):
         material = nd.new_material("M", **{keyword: choice.keyword})
-        assert socket(material, parameters.BY_KEYWORD[keyword].name) == choice.name
+        assert socket(material, parameter.name) == (place if parameter.kind == "INDEX" else choice.name)
     with pytest.raises(nd.ParameterError, match="one of"):
         nd.new_material("M", **{keyword: "black"})
 
@@ -154,6 +158,97 @@ def test_preparing_says_what_it_changed_and_a_second_time_changes_nothing():
     assert nd.prepare(scene).changes == ()
 
 
+def dispersing_object():
+    material = nd.new_material("Glass", preset="bk7", disperse=True)
+    add_sphere("Ball", 1.0, material)
+    return material
+
+
+def test_preparing_gives_paths_a_time_only_where_something_disperses():
+    scene = bpy.context.scene
+    add_sphere("Plain", 1.0, nd.new_material("Plain", preset="bk7"))
+    nd.prepare(scene)
+    assert not scene.render.use_motion_blur
+    dispersing_object()
+    changes = str(nd.prepare(scene))
+    assert "Motion Blur: False -> True" in changes and "Shutter: 0.5 -> 0.0" in changes
+    assert scene.render.use_motion_blur and scene.render.motion_blur_shutter == 0.0
+    assert nd.prepare(scene).changes == ()
+
+
+def test_preparing_leaves_motion_blur_that_is_in_use_alone():
+    scene = bpy.context.scene
+    dispersing_object()
+    scene.render.use_motion_blur = True
+    scene.render.motion_blur_shutter = 0.7
+    scene.cycles.rolling_shutter_type = "TOP"
+    nd.prepare(scene)
+    assert scene.render.motion_blur_shutter == pytest.approx(0.7)
+    assert scene.cycles.rolling_shutter_type == "TOP"
+
+
+def test_preparing_makes_every_time_as_likely():
+    scene = bpy.context.scene
+    dispersing_object()
+    scene.cycles.rolling_shutter_type = "TOP"
+    scene.render.motion_blur_shutter_curve.curves[0].points[0].location[1] = 0.2
+    scene.render.motion_blur_shutter_curve.update()
+    assert "Shutter Curve: flat" in nd.prepare(scene).changes
+    assert scene.cycles.rolling_shutter_type == "NONE"
+    assert nd.prepare(scene).changes == ()
+
+
+def test_what_else_uses_portals_or_vectors_is_named():
+    scene = bpy.context.scene
+    dispersing_object()
+    add_box("Gate", (2, 2, 2), (3, 3, 3), native("Gate", "ShaderNodeBsdfRayPortal"))
+    scene.view_layers[0].use_pass_vector = True
+    problems = "\n".join(map(str, nd.prepare(scene).problems))
+    assert "'Gate' has a Ray Portal" in problems and "has a Vector pass" in problems
+
+
+def test_sellmeier_coefficients_bring_their_own_index():
+    diamond = presets.load_preset("diamond").parameters
+    curve = {key: diamond[key] for key in ("dispersion_model", "sellmeier_b", "sellmeier_c")}
+    assert socket(nd.new_material("Diamond", **curve), "IOR") == pytest.approx(2.41748, abs=1e-5)
+    assert socket(nd.new_material("Cut", ior=2.4, **curve), "IOR") == pytest.approx(2.4)
+    with pytest.raises(nd.ParameterError, match="no index of refraction at 587.56 nm"):
+        nd.new_material("Odd", sellmeier_b=(-9.0, 0.0, 0.0), sellmeier_c=(0.0, 0.0, 0.0))
+
+
+def test_materials_of_equal_spectra_share_a_table():
+    materials = [
+        nd.new_material("A"),
+        nd.new_material("B", spectral_distribution="SUNSET"),
+        nd.new_material("C", spectral_distribution="sunset", spectral_gamut="REC709"),
+        nd.new_material("D", clamp_negative=False),
+    ]
+    assert [socket(material, "Spectral Table") for material in materials] == [0, 1, 1, 2]
+    (image,) = bpy.data.images
+    assert tuple(image.size) == (4096, 3) and image.packed_file is not None
+
+
+def test_a_spectrum_that_cannot_be_read_is_named_and_nothing_is_made():
+    for keywords, words in (
+        ({"spectral_distribution": "nowhere.csv"}, "nowhere.csv"),
+        ({"spectral_gamut": "CMYK"}, "one of SCENE"),
+        ({"spectral_saturation": 2.0}, "outside 0 to 1"),
+    ):
+        with pytest.raises(nd.ParameterError, match=words):
+            nd.new_material("M", **keywords)
+    assert not bpy.data.materials and not bpy.data.node_groups and not bpy.data.images
+
+
+def test_preparing_bakes_tables_for_the_files_own_working_space_again():
+    scene = bpy.context.scene
+    material = dispersing_object()
+    table = material_table(material)
+    bpy.ops.wm.set_working_color_space(working_space="Linear Rec.2020")
+    assert "Spectral Table of Glass: baked again" in nd.prepare(scene).changes
+    assert not np.array_equal(material_table(material), table)
+    assert np.array_equal(material_table(material), spectral_table(gamut="REC2020"))
+
+
 def test_every_preset_has_a_source_and_loads():
     assert {"water", "ice", "glass", "air_bubble"} <= set(nd.preset_names())
     for key in nd.preset_names():
@@ -179,8 +274,11 @@ def test_every_socket_has_its_limits_and_a_description():
     sockets = {
         item.name: item for item in group.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT"
     }
-    assert list(sockets) == [parameter.name for parameter in parameters.PARAMETERS]
-    for parameter in parameters.PARAMETERS:
+    set_with_the_table = {"Spectral Table", "Spectral Table Means"}
+    assert [name for name in sockets if name not in set_with_the_table] == [
+        parameter.name for parameter in parameters.SOCKETS
+    ]
+    for parameter in parameters.SOCKETS:
         item = sockets[parameter.name]
         assert item.description == parameter.description
         assert item.parent.name == parameter.panel
@@ -192,7 +290,13 @@ def test_the_shader_takes_exactly_the_tables_parameters():
     source = shader_source.inlined_source("nested_dielectric.osl")
     body = source[source.index("shader nested_dielectric(") :]
     inputs = [line.split("=")[0].split()[-1] for line in body[: body.index("output")].splitlines()[1:] if "=" in line]
-    assert inputs == [parameter.osl_name for parameter in parameters.PARAMETERS] + ["Requests"]
+    assert inputs == [parameter.osl_name for parameter in parameters.SOCKETS] + [
+        "Requests",
+        "Table",
+        "TableMeans",
+        "Weight",
+        "Wavelength",
+    ]
 
 
 def test_the_manual_holds_the_parameter_table():
