@@ -5,12 +5,51 @@ from __future__ import annotations
 import textwrap
 
 import bpy
+import bpy.utils.previews
+import numpy as np
 
-from .compatibility import blender_problem, settings_problem
-from .materials import dielectric_node, medium_material
+from .compatibility import achromatic_reason, blender_problem, settings_problem
+from .dispersion import LINE_C, LINE_D, LINE_F, abbe_number, material_ior
+from .materials import dielectric_node, get_parameter, material_table, medium_material, spectrum_settings
 from .media import get_priority, media, own_priority, winning_order
-from .operators import AssignPreset, Prepare, PriorityMove, PriorityOwn
-from .parameters import PRIORITY_PROPERTY
+from .operators import (
+    SELLMEIER_REMEDY,
+    AssignPreset,
+    DispersionModel,
+    Prepare,
+    PriorityMove,
+    PriorityOwn,
+    SellmeierIor,
+    Spectrum,
+    active_medium,
+    coefficients_ior,
+)
+from .parameters import BY_KEYWORD, DISPERSION_MODELS, PRIORITY_PROPERTY
+from .spectra import DISTRIBUTIONS, GAMUTS, preview
+from .spectral_images import digest
+
+MODEL_SOCKETS = {
+    "ABBE": ("ior", "abbe"),
+    "SELLMEIER": ("ior", "sellmeier_b", "sellmeier_c"),
+    "JF": ("ior", "dispersion"),
+}
+"""What each dispersion model reads."""
+
+REMEDIES = {
+    "ABBE": "set a larger Abbe number, or 0 for no dispersion",
+    "SELLMEIER": SELLMEIER_REMEDY,
+    "JF": "bring Dispersion nearer to 0",
+}
+"""What to do when a model has no index above 0."""
+
+IOR_TOLERANCE = 1e-4
+"""How far IOR may be from the index of the Sellmeier coefficients before the panel says so."""
+
+PICTURE_SIZE = (256, 256)
+MAX_PICTURES = 32
+
+_pictures: bpy.utils.previews.ImagePreviewCollection | None = None
+"""Pictures of spectral tables by the tables' digests, while the extension is registered."""
 
 
 class MediaList(bpy.types.UIList):
@@ -87,12 +126,23 @@ def draw_problem(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     """Why nothing would render as it should, in as many lines as it takes, and the button that mends the scene."""
     problem = blender_problem() or settings_problem(context.scene)
     if problem:
-        lines = layout.column(align=True)
-        lines.alert = True
-        characters = int(context.region.width / context.preferences.system.ui_scale / 8.0)
-        for index, line in enumerate(textwrap.wrap(problem[0].upper() + problem[1:], max(characters, 20))):
-            lines.label(text=line, icon="BLANK1" if index else "ERROR")
+        draw_alert(layout, context, problem)
     layout.operator(Prepare.bl_idname, icon="CHECKMARK")
+
+
+def draw_alert(layout: bpy.types.UILayout, context: bpy.types.Context, text: str) -> None:
+    """A problem, in red."""
+    lines = layout.column()
+    lines.alert = True
+    draw_text(lines, context, text, "ERROR")
+
+
+def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
+    """A text in as many lines as the region's width makes of it, the first with an icon."""
+    lines = layout.column(align=True)
+    characters = int(context.region.width / context.preferences.system.ui_scale / 8.0)
+    for index, line in enumerate(textwrap.wrap(text[0].upper() + text[1:], max(characters, 20))):
+        lines.label(text=line, icon="BLANK1" if index else icon)
 
 
 def draw_media(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -128,6 +178,128 @@ def draw_active(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Assign Preset", icon="MATERIAL")
 
 
+def draw_dispersion(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The dispersion of the active medium: its sockets, what they come to, and what keeps colours from showing."""
+    node = dielectric_node(active_medium(context))
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    disperse = node.inputs["Disperse"]
+    layout.prop(disperse, "default_value", text=disperse.name)
+    if disperse.default_value:
+        reason = achromatic_reason(context.scene)
+        if reason is not None:
+            draw_alert(layout, context, reason)
+        draw_text(layout, context, "The viewport shows it as at 587.6 nm; see its colours in a render", "INFO")
+
+    model = get_parameter(node, BY_KEYWORD["dispersion_model"])
+    buttons = layout.row(align=True)
+    for choice in DISPERSION_MODELS:
+        button = buttons.operator(DispersionModel.bl_idname, text=choice.name, depress=choice.keyword == model)
+        button.model = choice.keyword
+    sockets = layout.column()
+    for keyword in MODEL_SOCKETS[model]:
+        name = BY_KEYWORD[keyword].name
+        sockets.prop(node.inputs[name], "default_value", text=name)
+    draw_indices(layout, context, node)
+
+
+def draw_indices(layout: bpy.types.UILayout, context: bpy.types.Context, node: bpy.types.ShaderNodeGroup) -> None:
+    """A medium's index at Fraunhofer's lines and its Abbe number, or what to do where it has none."""
+    model = get_parameter(node, BY_KEYWORD["dispersion_model"])
+    values = {keyword: get_parameter(node, BY_KEYWORD[keyword]) for keyword in MODEL_SOCKETS[model]}
+    values["dispersion_model"] = model
+    lines = {"n_C": LINE_C, "n_d": LINE_D, "n_F": LINE_F}
+    indices = {name: material_ior(values, wavelength) for name, wavelength in lines.items()}
+    unreal = [f"{lines[name]:.1f}" for name, index in indices.items() if not index > 0.0]
+    if unreal:
+        draw_alert(layout, context, f"No real index above 0 at {', '.join(unreal)} nm; {REMEDIES[model]}")
+        return
+    rows = layout.column(align=True)
+    for name, index in indices.items():
+        draw_value(rows, name, f"{index:.5f} ({lines[name]:.1f} nm)")
+    abbe = abbe_number(values)
+    draw_value(rows, "V_d", f"{abbe:.2f}" if np.isfinite(abbe) else "no dispersion")
+
+    own = coefficients_ior(node)
+    if model == "SELLMEIER" and abs(own - values["ior"]) > IOR_TOLERANCE:
+        text = f"IOR is not the coefficients' own {own:.5f}; their curve is shifted to go through IOR"
+        draw_text(layout, context, text, "INFO")
+        layout.operator(SellmeierIor.bl_idname, text=f"Set IOR to {own:.5f}")
+
+
+def draw_value(layout: bpy.types.UILayout, name: str, value: str) -> None:
+    """A name and a value to read, placed as a property's."""
+    columns = layout.split(factor=0.4)
+    label = columns.row()
+    label.alignment = "RIGHT"
+    label.label(text=name)
+    columns.label(text=value)
+
+
+def draw_spectrum(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The active medium's spectral table: its picture, what it was baked from, and the button to bake another."""
+    material = active_medium(context)
+    settings = spectrum_settings(material)
+    table = material_table(material)
+    if table is not None:
+        layout.template_icon(icon_value=picture(table), scale=6.0)
+    names = {choice.keyword: choice.name for choice in (*DISTRIBUTIONS, *GAMUTS)}
+    distribution = str(settings["spectral_distribution"])
+    gamut = str(settings["spectral_gamut"])
+    rows = layout.column(align=True)
+    draw_value(rows, "Distribution", names.get(distribution.upper()) or bpy.path.basename(distribution))
+    draw_value(rows, "Gamut", names.get(gamut, gamut))
+    draw_value(rows, "Saturation", f"{settings['spectral_saturation']:.3g}")
+    draw_value(rows, "Negative", "clamped" if settings["clamp_negative"] else "kept")
+    layout.operator(Spectrum.bl_idname, text="Spectrum...")
+
+
+def picture(table: np.ndarray) -> int:
+    """The icon that shows a spectral table, drawn on first use."""
+    name = digest(table)
+    if name not in _pictures:
+        if len(_pictures) >= MAX_PICTURES:
+            del _pictures[next(iter(_pictures))]
+        pixels = preview(table, *PICTURE_SIZE)
+        linear = pixels[..., :3]
+        # sRGB's transfer curve (IEC 61966-2-1): icons are not managed.
+        pixels[..., :3] = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1.0 / 2.4) - 0.055)
+        drawn = _pictures.new(name)
+        drawn.image_size = PICTURE_SIZE
+        drawn.image_pixels_float.foreach_set(pixels.ravel())
+    return _pictures[name].icon_id
+
+
+def open_pictures() -> None:
+    """Make room for the panels' pictures."""
+    global _pictures
+    _pictures = bpy.utils.previews.new()
+
+
+def close_pictures() -> None:
+    """Give back what the panels' pictures take."""
+    global _pictures
+    bpy.utils.previews.remove(_pictures)
+    _pictures = None
+
+
+class _ObjectProperties:
+    """Where a panel of the Object properties stands."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class _Sidebar:
+    """Where a panel of the 3D view's sidebar stands."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Nested Dielectric"
+
+
 class _MediaPanel:
     """What both panels show."""
 
@@ -137,23 +309,80 @@ class _MediaPanel:
         draw(self.layout, context)
 
 
-class ObjectPanel(_MediaPanel, bpy.types.Panel):
+class _ActiveMediumPanel:
+    """Shown while the active object is a medium."""
+
+    bl_options = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return active_medium(context) is not None
+
+
+class _DispersionPanel(_ActiveMediumPanel):
+    """What both panels show of dispersion."""
+
+    bl_label = "Dispersion"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        draw_dispersion(self.layout, context)
+
+
+class _SpectrumPanel(_ActiveMediumPanel):
+    """What both panels show of the spectral table."""
+
+    bl_label = "Spectrum"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        draw_spectrum(self.layout, context)
+
+
+class ObjectPanel(_MediaPanel, _ObjectProperties, bpy.types.Panel):
     """Media of the scene, in the Object properties."""
 
     bl_idname = "NESTED_DIELECTRIC_PT_object"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "object"
-    bl_options = {"DEFAULT_CLOSED"}
 
 
-class SidebarPanel(_MediaPanel, bpy.types.Panel):
+class ObjectDispersionPanel(_DispersionPanel, _ObjectProperties, bpy.types.Panel):
+    """The active medium's dispersion, in the Object properties."""
+
+    bl_idname = "NESTED_DIELECTRIC_PT_object_dispersion"
+    bl_parent_id = ObjectPanel.bl_idname
+
+
+class ObjectSpectrumPanel(_SpectrumPanel, _ObjectProperties, bpy.types.Panel):
+    """The active medium's spectral table, in the Object properties."""
+
+    bl_idname = "NESTED_DIELECTRIC_PT_object_spectrum"
+    bl_parent_id = ObjectDispersionPanel.bl_idname
+
+
+class SidebarPanel(_MediaPanel, _Sidebar, bpy.types.Panel):
     """Media of the scene, in the sidebar of the 3D view."""
 
     bl_idname = "NESTED_DIELECTRIC_PT_sidebar"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Nested Dielectric"
 
 
-CLASSES = (MediaList, ObjectPanel, SidebarPanel)
+class SidebarDispersionPanel(_DispersionPanel, _Sidebar, bpy.types.Panel):
+    """The active medium's dispersion, in the sidebar of the 3D view."""
+
+    bl_idname = "NESTED_DIELECTRIC_PT_sidebar_dispersion"
+    bl_parent_id = SidebarPanel.bl_idname
+
+
+class SidebarSpectrumPanel(_SpectrumPanel, _Sidebar, bpy.types.Panel):
+    """The active medium's spectral table, in the sidebar of the 3D view."""
+
+    bl_idname = "NESTED_DIELECTRIC_PT_sidebar_spectrum"
+    bl_parent_id = SidebarDispersionPanel.bl_idname
+
+
+CLASSES = (
+    MediaList,
+    ObjectPanel,
+    ObjectDispersionPanel,
+    ObjectSpectrumPanel,
+    SidebarPanel,
+    SidebarDispersionPanel,
+    SidebarSpectrumPanel,
+)

@@ -28,6 +28,9 @@ def register() -> None:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
 
+        panels.open_pictures()
+        undo.callback(panels.close_pictures)
+
         bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
             name="Active Medium", get=panels.get_active, set=panels.set_active, options=set()
         )
