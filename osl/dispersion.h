@@ -32,6 +32,7 @@ struct Index {
   float at_path; /* at the path's wavelength; that of white light while it has none */
   float white;
   float slope;
+  int regular; /* the slope describes it */
 };
 
 /* An index of refraction that Snell's law can use, whatever the artist typed. A comparison with NaN is false. */
@@ -81,10 +82,12 @@ Index medium_index(float ior, DispersionCurve d, int spectral, float wavelength)
   n.white = usable_ior((d.model == DISPERSION_JF && d.disperses) ? ior + jf_offset(d.spread, LINE_D) : ior);
   n.at_path = n.white;
   n.slope = 0.0;
+  n.regular = 1;
   if (spectral) {
     n.slope = (ior_at(ior, d, LINE_F) - ior_at(ior, d, LINE_C)) / (cauchy_distance(LINE_F) - cauchy_distance(LINE_C));
-    if (!(abs(n.slope) < 1e9))
-      n.slope = 0.0;
+    /* No glass is further off at the ends; what is not a number is not close either. */
+    n.regular = abs(ior_at(ior, d, SHORTEST) - n.white - n.slope * cauchy_distance(SHORTEST)) < 0.05 &&
+                abs(ior_at(ior, d, LONGEST) - n.white - n.slope * cauchy_distance(LONGEST)) < 0.05;
     if (wavelength > 0.0)
       n.at_path = usable_ior(ior_at(ior, d, wavelength));
   }

@@ -26,6 +26,7 @@ Medium air()
   m.priority = AIR_PRIORITY;
   m.ior.at_path = m.ior.white = 1.0;
   m.ior.slope = 0.0;
+  m.ior.regular = 1;
   m.disperses = 0;
   m.transmittance = color(1.0);
   m.transmittance_depth = 1.0;

@@ -2,7 +2,7 @@
 
 import random
 
-import bpy  # noqa: F401  before bmesh, which lives inside it
+import bpy  # before bmesh, which lives inside it
 import bmesh  # isort: skip
 import numpy as np
 import pytest
@@ -36,7 +36,19 @@ def build_flawed_solid(bm: bmesh.types.BMesh, chance: random.Random) -> None:
         bmesh.ops.duplicate(bm, geom=bm.verts[:] + bm.edges[:] + bm.faces[:])
 
 
-def build_chaos(seed: int, roughness: float) -> None:
+def random_curve(chance: random.Random) -> dict:
+    """Any dispersion, with resonances in the middle of the spectrum and indices without bounds."""
+    return {
+        "disperse": chance.random() < 0.7,
+        "dispersion_model": chance.choice(("ABBE", "SELLMEIER", "JF")),
+        "abbe": chance.choice((0.0, 0.01, 20.0)),
+        "sellmeier_b": [chance.uniform(-2.0, 3.0) for _ in range(3)],
+        "sellmeier_c": [chance.choice((0.0, 0.01, 0.25, 0.35, 100.0)) for _ in range(3)],
+        "dispersion": chance.choice((-10.0, 0.03, 0.5, 10.0)),
+    }
+
+
+def build_chaos(seed: int, roughness: float, split: bool = False) -> None:
     """Up to seven flawed media on top of each other, at a scale from millimetres to kilometres, the camera among or
     before them.
     """
@@ -54,6 +66,8 @@ def build_chaos(seed: int, roughness: float) -> None:
         if chance.random() < 0.5:
             keywords["transmittance"] = (chance.random(), chance.random(), 0.0)
             keywords["transmittance_depth"] = scale * 10 ** chance.uniform(-2, 1)
+        if split:
+            keywords |= random_curve(random.Random(f"{seed} {index}"))
         obj = add_mesh(
             f"Object {index}",
             lambda bm: build_flawed_solid(bm, chance),
@@ -86,3 +100,14 @@ def test_flawed_rough_media_stay_finite_and_make_no_light_on_average(seed):
     picture = render(64)
     assert np.isfinite(picture).all() and picture.min() >= 0.0
     assert picture.mean() < 1.01
+
+
+@pytest.mark.parametrize("seed", (*range(41, 49), 98))
+def test_flawed_media_with_any_curve_stay_finite_and_make_no_light(seed):
+    """A sample of one wavelength weighs up to 2.75 in one channel; 64 of them spread evenly average to white."""
+    build_chaos(seed, roughness=0.0, split=True)
+    settings = bpy.context.scene.render
+    settings.use_motion_blur, settings.motion_blur_shutter = True, 0.0
+    picture = render(64)
+    assert np.isfinite(picture).all() and picture.min() >= 0.0
+    assert picture.max() < 2.75 and picture.mean() < 1.01
