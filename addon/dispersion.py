@@ -75,7 +75,8 @@ def mean_cauchy_distances(table: np.ndarray) -> np.ndarray:
 def material_ior(values: dict, wavelength: float) -> float:
     """Index of refraction of a material at a wavelength in nm, as the shader takes it.
 
-    ``values`` holds the material's parameters by keyword. Sellmeier's curve is shifted so that it goes through IOR at the d line: the
+    ``values`` holds the material's parameters by keyword. Sellmeier's curve is shifted so that it goes through IOR at
+    the d line: the
     published one if IOR is its own.
     """
     ior = values["ior"]

@@ -3,7 +3,8 @@
 Sockets of the node group, keyword arguments of :func:`nested_dielectric.new_material`, the names a preset file may
 use, the inputs of the OSL shader and the manual's table all come from :data:`PARAMETERS`.
 
-A spectral table is baked from the parameters of the panel `Spectrum`, so these are settings of a material and no sockets.
+A spectral table is baked from the parameters of the panel `Spectrum`, so these are settings of a material and no
+sockets.
 """
 
 from __future__ import annotations
@@ -32,8 +33,10 @@ class ParameterError(ValueError):
 class Parameter:
     """One parameter of the material.
 
-    ``kind`` is one of ``INT``, ``FLOAT``, ``BOOL``, ``COLOR`` (scene-linear RGB), ``VECTOR``, ``MENU``, ``INDEX`` (a word
-    in Python, its place among the choices in the socket: neighbours cannot read menus), ``TEXT`` and ``SHADER``; ``minimum`` and ``maximum`` are hard limits, ``unit`` the subtype of the socket (``FACTOR``, ``DISTANCE``,
+    ``kind`` is one of ``INT``, ``FLOAT``, ``BOOL``, ``COLOR`` (scene-linear RGB), ``VECTOR``, ``MENU``, ``INDEX`` (a
+    word
+    in Python, its place among the choices in the socket: neighbours cannot read menus), ``TEXT`` and ``SHADER``;
+    ``minimum`` and ``maximum`` are hard limits, ``unit`` the subtype of the socket (``FACTOR``, ``DISTANCE``,
     ``WAVELENGTH``, ``DIRECTION`` or empty).
     """
 

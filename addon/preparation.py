@@ -21,7 +21,8 @@ AT_LEAST = {
     "transparent_max_bounces": 256,
 }
 """Limits a path through nested media needs: an invalid surface costs a transparent bounce, an interface a transmission
-or glossy one. In a white world the glass of iced water loses 4.7 % of its light at Blender's 12 bounces, 0.3 % at 64 and
+or glossy one. In a white world the glass of iced water loses 4.7 % of its light at Blender's 12 bounces, 0.3 % at 64
+and
 0.08 % at 256.
 """
 
@@ -41,9 +42,12 @@ class Preparation:
 def prepare(scene: bpy.types.Scene) -> Preparation:
     """Set what a scene needs to render nested dielectrics, and look for problems with its media.
 
-    Cycles on the CPU with Open Shading Language, and enough bounces; where a medium disperses, the motion blur that carries the
-    wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space. Larger limits stay.
-    A second call changes nothing. Raises :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
+    Cycles on the CPU with Open Shading Language, and enough bounces; where a medium disperses, the motion blur that
+    carries the
+    wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space. Larger
+    limits stay.
+    A second call changes nothing. Raises :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender
+    cannot.
     """
     require_blender()
     changes: list[str] = []

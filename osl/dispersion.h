@@ -26,8 +26,8 @@ struct DispersionCurve {
   float spread;       /* JF's */
 };
 
-/* What a medium does to all wavelengths: the index of white light, and how it spreads around it as Cauchy's second term has
- * it, in nm^2. */
+/* What a medium does to all wavelengths: the index of white light, and how it spreads around it as Cauchy's second term
+ * has it, in nm^2. */
 struct Index {
   float at_path; /* at the path's wavelength; that of white light while it has none */
   float white;
@@ -61,8 +61,8 @@ float jf_offset(float spread, float wavelength)
   return ((1.0 - t) * (1.0 - t) - 0.5) * spread;
 }
 
-/* n at a wavelength, where `ior` is the artist's. Sellmeier's curve is shifted to go through it at the d line; Abbe's number
- * is that of Cauchy's (1836) two terms. */
+/* n at a wavelength, where `ior` is the artist's. Sellmeier's curve is shifted to go through it at the d line; Abbe's
+ * number is that of Cauchy's (1836) two terms. */
 float ior_at(float ior, DispersionCurve d, float wavelength)
 {
   if (d.model == DISPERSION_SELLMEIER)

@@ -38,9 +38,9 @@ int absorbs(Medium m)
   return min(m.transmittance[0], min(m.transmittance[1], m.transmittance[2])) < 1.0 && m.transmittance_depth > 0.0;
 }
 
-/* Cycles evaluates these RNA paths on the evaluated object, so a neighbour's keyframed or driven socket is read as it is
- * at the rendered frame and nothing of the extension is needed. The fourth component tells a value (1) from a missing
- * path (0). */
+/* Cycles evaluates these RNA paths on the evaluated object, so a neighbour's keyframed or driven socket is read as it
+ * is at the rendered frame and nothing of the extension is needed. The fourth component tells a value (1) from a
+ * missing path (0). */
 #define OBJECT_PRIORITY "\001object:nd_priority"
 #define SOCKET(slot, name) \
   "\001object:material_slots[" slot "].material.node_tree.nodes[\"Nested Dielectric\"].inputs[\"" name "\"].default_value"
@@ -59,9 +59,9 @@ float shaded_priority(float material_priority)
 /* Any material in the second slot: an object without one needs no look at the face that was hit. */
 #define SECOND_SLOT "\001object:material_slots[1].material.pass_index"
 
-/* The medium that was hit last by trace() is made of the nested dielectric of the face that was hit. A face with another
- * material, such as a label on a bottle, closes the object's surface all the same: it counts as the first dielectric of
- * the object. Returns that slot's priority, or AIR_PRIORITY if the object has no nested dielectric. */
+/* The medium that was hit last by trace() is made of the nested dielectric of the face that was hit. A face with
+ * another material, such as a label on a bottle, closes the object's surface all the same: it counts as the first
+ * dielectric of the object. Returns that slot's priority, or AIR_PRIORITY if the object has no nested dielectric. */
 float hit_slot(output int slot)
 {
   string priorities[MATERIAL_SLOTS] = SOCKETS("Priority");
@@ -89,7 +89,8 @@ float hit_priority(output int slot)
   return (value[3] > 0.0) ? value[0] : hit_slot(slot);
 }
 
-/* How the medium's index changes with the wavelength. What white light does not need is left out unless the render is spectral. */
+/* How the medium's index changes with the wavelength. What white light does not need is left out unless the render is
+ * spectral. */
 DispersionCurve hit_dispersion(int slot, int spectral)
 {
   string models[MATERIAL_SLOTS] = SOCKETS("Dispersion Model");

@@ -16,9 +16,9 @@ float step_past(float t)
 
 /* +1 if the surface hit last was left from its inside, -1 if it was entered from its outside.
  *
- * trace() turns the hit's normal towards the ray, so the side is gone from it, and the winding of the vertices is reversed
- * by a mirroring transform. What keeps the side is the hit's surface parametrisation: Cycles negates dP/du on back faces,
- * so the derivatives of u and v, put back on the triangle's edges, give dP/dx with the side's sign. */
+ * trace() turns the hit's normal towards the ray, so the side is gone from it, and the winding of the vertices is
+ * reversed by a mirroring transform. What keeps the side is the hit's surface parametrisation: Cycles negates dP/du on
+ * back faces, so the derivatives of u and v, put back on the triangle's edges, give dP/dx with the side's sign. */
 int hit_crossing(vector direction)
 {
   float u = 0.0, v = 0.0;
@@ -46,10 +46,10 @@ struct Surroundings {
 
 /* The media that fill the point just off P in the given direction, P's own object left out.
  *
- * The winding number of a closed surface about a point is the sum of the signed crossings along any ray from it (Jacobson,
- * Kavan, Sorkine-Hornung 2013, section 3). Summed per priority it also makes objects of equal priority one medium. The
- * running sum is above zero only if some object holds the point, so a probe may stop at the first sum that decides that
- * the surface's own medium does not win.
+ * The winding number of a closed surface about a point is the sum of the signed crossings along any ray from it
+ * (Jacobson, Kavan, Sorkine-Hornung 2013, section 3). Summed per priority it also makes objects of equal priority one
+ * medium. The running sum is above zero only if some object holds the point, so a probe may stop at the first sum that
+ * decides that the surface's own medium does not win.
  *
  * own_priority is the material's until an object's own is asked for, which a surface that meets no other medium never
  * needs; own_is_known tells that it has been. */
@@ -111,8 +111,8 @@ Surroundings probe_surroundings(
 }
 
 /* How far a ray from inside a medium runs in it: to the surface where it ends, to a foreign object if those stop it, or
- * to reach. `holders` is the number of objects of its priority around the origin; surfaces of media that the medium wins
- * over do not exist in it. */
+ * to reach. `holders` is the number of objects of its priority around the origin; surfaces of media that the medium
+ * wins over do not exist in it. */
 float medium_extent(
     point origin, vector direction, Medium m, int holders, float reach, int foreign_stops, output int foreign)
 {

@@ -103,7 +103,8 @@ def prism(mat, priority=None):
 def deviation():
     """Degrees by which light from the camera is turned on its way to the world, in the XY plane.
 
-    The world shows (x, y, z) as colours times what the faces let through; z is 0, so green over red and blue tells the direction.
+    The world shows (x, y, z) as colours times what the faces let through; z is 0, so green over red and blue tells
+    the direction.
     """
     picture = render(samples=16)
     red, green, blue = picture.reshape(-1, 3).mean(axis=0)
@@ -246,7 +247,9 @@ def test_colours_are_those_of_one_render_for_every_wavelength(name, request):
 
 
 def assert_same_colours(ours, reference):
-    """No tile differs by more than 4 standard errors, and no channel of the whole by more than 0.2 % beyond 2 standard errors."""
+    """No tile differs by more than 4 standard errors, and no channel of the whole by more than 0.2 % beyond 2
+    standard errors.
+    """
     assert_same_picture(ours, reference, mean=5e-3)
     a, b = ours.mean(axis=(1, 2)), reference.mean(axis=(1, 2))
     error = np.sqrt(a.var(axis=0, ddof=1) / len(a) + b.var(axis=0, ddof=1) / len(b))
@@ -349,8 +352,10 @@ def test_motion_and_colour_do_not_correlate():
         stripe.keyframe_insert("location", frame=frame)
     scene.frame_set(1)
     picture = render(samples=1024)
-    # Light that meets the pane straight on is not parted in space, so the stripe's trail is white along its whole length. A
-    # pixel sees it for a fifth of the time, which leaves 1.2 / sqrt(1024 / 5) = 0.08 of noise in a channel, and a column of the stripe's
+    # Light that meets the pane straight on is not parted in space, so the stripe's trail is white along its whole
+    # length. A
+    # pixel sees it for a fifth of the time, which leaves 1.2 / sqrt(1024 / 5) = 0.08 of noise in a channel, and a
+    # column of the stripe's
     # 6 pixels 0.03.
     trail = picture[13:19].mean(axis=0)
     trail = trail[trail.mean(axis=1) > 0.1]
