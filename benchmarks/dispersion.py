@@ -286,7 +286,7 @@ def plot(results: dict[str, dict], path: Path) -> None:
         column[1].set_xlabel("samples per pixel")
     axes[0, 0].set_ylabel("mean square error")
     axes[1, 0].set_ylabel("mean square error of the chroma")
-    axes[0, -1].legend(fontsize="small")
+    figure.legend(*axes[0, -1].get_legend_handles_labels(), loc="outside lower center", ncols=5)
     figure.savefig(path, dpi=120)
 
 
@@ -302,7 +302,7 @@ def draw(axis: Axes, result: dict, part: str) -> None:
             axis.loglog(counts, slope, color="0.6", linestyle=":", linewidth=1, label="1 / samples", zorder=0)
     ratio = result["variance_ratio"]
     text = f"variance at {ratio['samples']}:\n{ratio[part]:.1f} times lower"
-    axis.text(0.03, 0.03, text, transform=axis.transAxes, fontsize="small", backgroundcolor="white")
+    axis.text(0.03, 0.03, text, transform=axis.transAxes, fontsize="small", bbox={"color": "white", "pad": 1})
     axis.set_xticks(counts, [str(count) for count in counts])
     axis.tick_params(axis="x", which="minor", bottom=False)
     axis.grid(alpha=0.3)
