@@ -182,7 +182,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
     kinds = {
         parameter.osl_name: "INT" if parameter.kind in ("MENU", "BOOL") else parameter.kind for parameter in SOCKETS
     }
-    kinds |= {"Requests": "COLOR", "Table": "INT", "TableMeans": "VECTOR", "Weight": "COLOR", "Wavelength": "FLOAT"}
+    kinds |= {"Requests": "COLOR", "CountsPortals": "SHADER", "Table": "INT", "TableMeans": "VECTOR", "Weight": "COLOR", "Wavelength": "FLOAT"}
     script = _add_script(
         tree, "Nested Dielectric Shader", scripts[SHADER_FILE], kinds, {"BSDF": "SHADER", "Running": "FLOAT"}
     )
@@ -203,10 +203,8 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
     # Not an emitter: Cycles would take every glass for a lamp and spend light samples on it.
     alarm = nodes.new("ShaderNodeBsdfDiffuse")
     alarm.inputs["Color"].default_value = (1.0, 0.0, 1.0, 1.0)
-    # Cycles counts portals only if it finds a Ray Portal node; this one never has any weight.
-    counted = _mix(tree, script.outputs["Running"], alarm.outputs[0], nodes.new("ShaderNodeBsdfRayPortal").outputs[0])
-    counted.label = "Makes Cycles count portals"
-    running = _mix(tree, script.outputs["Running"], counted.outputs[0], script.outputs["BSDF"])
+    links.new(nodes.new("ShaderNodeBsdfRayPortal").outputs[0], script.inputs["CountsPortals"])
+    running = _mix(tree, script.outputs["Running"], alarm.outputs[0], script.outputs["BSDF"])
     running.label = "Magenta where OSL or its ray tracing does not run"
     links.new(running.outputs[0], outputs.inputs[CYCLES_OUTPUT])
 

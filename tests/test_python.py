@@ -292,6 +292,7 @@ def test_the_shader_takes_exactly_the_tables_parameters():
     inputs = [line.split("=")[0].split()[-1] for line in body[: body.index("output")].splitlines()[1:] if "=" in line]
     assert inputs == [parameter.osl_name for parameter in parameters.SOCKETS] + [
         "Requests",
+        "CountsPortals",
         "Table",
         "TableMeans",
         "Weight",
