@@ -43,11 +43,9 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     """Set what a scene needs to render nested dielectrics, and look for problems with its media.
 
     Cycles on the CPU with Open Shading Language, and enough bounces; where a medium disperses, the motion blur that
-    carries the
-    wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space. Larger
-    limits stay.
-    A second call changes nothing. Raises :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender
-    cannot.
+    carries the wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space.
+    Larger limits stay. A second call changes nothing. Raises
+    :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
     """
     require_blender()
     changes: list[str] = []
