@@ -182,7 +182,15 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
     kinds = {
         parameter.osl_name: "INT" if parameter.kind in ("MENU", "BOOL") else parameter.kind for parameter in SOCKETS
     }
-    kinds |= {"Requests": "COLOR", "CountsPortals": "SHADER", "Table": "INT", "TableMeans": "VECTOR", "Weight": "COLOR", "Wavelength": "FLOAT"}
+    kinds |= {
+        "Requests": "COLOR",
+        "CountsPortals": "SHADER",
+        "Spectral": "INT",
+        "Table": "INT",
+        "TableMeans": "VECTOR",
+        "Weight": "COLOR",
+        "Wavelength": "FLOAT",
+    }
     script = _add_script(
         tree, "Nested Dielectric Shader", scripts[SHADER_FILE], kinds, {"BSDF": "SHADER", "Running": "FLOAT"}
     )
@@ -192,7 +200,10 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
         if parameter.kind == "MENU":
             source = _menu(tree, source, parameter)
         links.new(source, script.inputs[parameter.osl_name])
-    links.new(_requests(tree), script.inputs["Requests"])
+    spectral = _view_layer_attribute(tree, "render.use_motion_blur").outputs["Fac"]
+    coefficients, absorbs = _absorption_coefficients(tree, inputs)
+    links.new(_requests(tree, inputs, spectral, absorbs), script.inputs["Requests"])
+    links.new(spectral, script.inputs["Spectral"])
     table = inputs.outputs[TABLE_SOCKET]
     tables = _spectral_tables(tree, table, scripts[COORDINATE_FILE])
     links.new(table, script.inputs["Table"])
@@ -208,7 +219,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
     running.label = "Magenta where OSL or its ray tracing does not run"
     links.new(running.outputs[0], outputs.inputs[CYCLES_OUTPUT])
 
-    links.new(_absorption(tree, inputs), outputs.inputs[VOLUME_OUTPUT])
+    links.new(_absorption(tree, coefficients, absorbs), outputs.inputs[VOLUME_OUTPUT])
 
     links.new(_preview(tree, inputs), outputs.inputs[PREVIEW_OUTPUT])
     _arrange(tree)
@@ -242,9 +253,7 @@ def _spectral_tables(
     Linear interpolation makes the spectrum continuous and keeps every table's mean, because the edges are extended.
     """
     nodes, links = tree.nodes, tree.links
-    shutter = nodes.new("ShaderNodeAttribute")
-    shutter.attribute_type = "VIEW_LAYER"
-    shutter.attribute_name = "render.motion_blur_shutter"
+    shutter = _view_layer_attribute(tree, "render.motion_blur_shutter")
     coordinate = _add_script(
         tree,
         COORDINATE_NODE,
@@ -260,6 +269,14 @@ def _spectral_tables(
     image.extension = "EXTEND"
     links.new(coordinate.outputs["Coordinate"], image.inputs["Vector"])
     return image
+
+
+def _view_layer_attribute(tree: bpy.types.NodeTree, path: str) -> bpy.types.ShaderNodeAttribute:
+    """A property of the scene that is rendered; a constant to Cycles, which leaves out what it makes needless."""
+    attribute = tree.nodes.new("ShaderNodeAttribute")
+    attribute.attribute_type = "VIEW_LAYER"
+    attribute.attribute_name = path
+    return attribute
 
 
 def _ensure_socket(sockets: bpy.types.NodeInputs, kind: str, name: str) -> None:
@@ -326,37 +343,46 @@ def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.Node
     return _mix(tree, reflectance, clear.outputs[0], gloss.outputs[0]).outputs[0]
 
 
-def _absorption(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
+def _absorption_coefficients(
+    tree: bpy.types.NodeTree, inputs: bpy.types.Node
+) -> tuple[bpy.types.NodeSocket, bpy.types.NodeSocket]:
+    """What the medium absorbs per length, and whether it absorbs at all (0 or 1)."""
+    math = partial(_math, tree)
+    channels = tree.nodes.new("ShaderNodeSeparateColor")
+    tree.links.new(inputs.outputs["Transmittance"], channels.inputs[0])
+    depth = inputs.outputs["Transmittance Depth"]
+    coefficients = tree.nodes.new("ShaderNodeCombineXYZ")
+    for channel, coefficient in zip(channels.outputs, coefficients.inputs):
+        decay = math("MULTIPLY", math("LOGARITHM", math("MAXIMUM", channel, 1e-6), e), -1.0)
+        tree.links.new(math("DIVIDE", decay, depth), coefficient)
+    least = math("MINIMUM", math("MINIMUM", channels.outputs[0], channels.outputs[1]), channels.outputs[2])
+    absorbs = math("MULTIPLY", math("LESS_THAN", least, 1.0), math("GREATER_THAN", depth, 0.0))
+    return coefficients.outputs[0], absorbs
+
+
+def _absorption(
+    tree: bpy.types.NodeTree, coefficients: bpy.types.NodeSocket, absorbs: bpy.types.NodeSocket
+) -> bpy.types.NodeSocket:
     """Absorption of rays that start at the camera or at a foreign object, whose way may meet no surface of a medium.
 
     All other rays are charged by the shader, which knows who wins. Where nothing is absorbed the mix is folded away and
     Cycles sees no volume.
     """
     nodes, links = tree.nodes, tree.links
-
-    math = partial(_math, tree)
-    channels = nodes.new("ShaderNodeSeparateColor")
-    links.new(inputs.outputs["Transmittance"], channels.inputs[0])
-    depth = inputs.outputs["Transmittance Depth"]
-    coefficients = nodes.new("ShaderNodeCombineXYZ")
-    for channel, coefficient in zip(channels.outputs, coefficients.inputs):
-        decay = math("MULTIPLY", math("LOGARITHM", math("MAXIMUM", channel, 1e-6), e), -1.0)
-        links.new(math("DIVIDE", decay, depth), coefficient)
-
     path = nodes.new("ShaderNodeLightPath")
     charged = nodes.new("ShaderNodeVectorMath")
     charged.operation = "SCALE"
-    links.new(coefficients.outputs[0], charged.inputs[0])
-    links.new(math("ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"]), charged.inputs["Scale"])
+    links.new(coefficients, charged.inputs[0])
+    links.new(
+        _math(tree, "ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"]), charged.inputs["Scale"]
+    )
     volume = nodes.new("ShaderNodeVolumeCoefficients")
     volume.inputs["Scatter Coefficients"].default_value = (0.0, 0.0, 0.0)
     links.new(charged.outputs[0], volume.inputs["Absorption Coefficients"])
-
-    least = math("MINIMUM", math("MINIMUM", channels.outputs[0], channels.outputs[1]), channels.outputs[2])
-    absorbs = nodes.new("ShaderNodeMixShader")
-    links.new(math("MULTIPLY", math("LESS_THAN", least, 1.0), math("GREATER_THAN", depth, 0.0)), absorbs.inputs[0])
-    links.new(volume.outputs[0], absorbs.inputs[2])
-    return absorbs.outputs[0]
+    mix = nodes.new("ShaderNodeMixShader")
+    links.new(absorbs, mix.inputs[0])
+    links.new(volume.outputs[0], mix.inputs[2])
+    return mix.outputs[0]
 
 
 def _menu(tree: bpy.types.NodeTree, source: bpy.types.NodeSocket, parameter: Parameter) -> bpy.types.NodeSocket:
@@ -375,31 +401,65 @@ def _menu(tree: bpy.types.NodeTree, source: bpy.types.NodeSocket, parameter: Par
     return switch.outputs[0]
 
 
-def _requests(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
-    """One colour that depends on every attribute neighbours read of an object, so that Cycles exports them."""
+def _requests(
+    tree: bpy.types.NodeTree, inputs: bpy.types.Node, spectral: bpy.types.NodeSocket, absorbs: bpy.types.NodeSocket
+) -> bpy.types.NodeSocket:
+    """One colour that depends on every attribute neighbours read of an object, so that Cycles exports them.
+
+    Cycles looks attributes up one by one in the order of these nodes, and what is not there takes longest: so the
+    list is kept short. What a material does not have is multiplied by a constant 0, and Cycles drops it.
+    """
+    math = partial(_math, tree)
+    model = inputs.outputs["Dispersion Model"]
+    curve = {
+        name: math("MULTIPLY", math("COMPARE", model, float(index), 0.5), spectral)
+        for index, name in enumerate(("Abbe", "Sellmeier B"))
+    }
+    # JF's also moves the index of white light.
+    curve["Dispersion"] = math("COMPARE", model, 2.0, 0.5)
+    curve["Sellmeier C"] = curve["Sellmeier B"]
+    conditions = curve | {
+        "Transmittance": absorbs,
+        "Transmittance Depth": absorbs,
+        "Disperse": inputs.outputs["Disperse"],
+        "Dispersion Model": math("MAXIMUM", curve["Sellmeier B"], curve["Dispersion"]),
+    }
     names = [
-        (PRIORITY_PROPERTY, "OBJECT"),
-        ("material_slots[1].material.pass_index", "OBJECT"),
-        ("material_index", "GEOMETRY"),
+        (PRIORITY_PROPERTY, "OBJECT", None),
+        ("material_slots[1].material.pass_index", "OBJECT", None),
+        ("material_index", "GEOMETRY", None),
     ]
     names += [
-        (f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value', "OBJECT")
+        (
+            f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value',
+            "OBJECT",
+            conditions.get(name),
+        )
         for slot in range(MATERIAL_SLOTS)
         for name in NEIGHBOUR_PARAMETERS
     ]
-    total = None
-    for name, kind in names:
+    sums: dict[bpy.types.NodeSocket | None, bpy.types.NodeSocket] = {}
+    for name, kind, condition in names:
         attribute = tree.nodes.new("ShaderNodeAttribute")
         attribute.attribute_name = name
         attribute.attribute_type = kind
-        if total is None:
-            total = attribute.outputs["Color"]
-            continue
-        add = tree.nodes.new("ShaderNodeVectorMath")
-        tree.links.new(total, add.inputs[0])
-        tree.links.new(attribute.outputs["Color"], add.inputs[1])
-        total = add.outputs[0]
+        value = attribute.outputs["Color"]
+        sums[condition] = _vector_math(tree, "ADD", sums[condition], value) if condition in sums else value
+    total = sums.pop(None)
+    for condition, value in sums.items():
+        total = _vector_math(tree, "ADD", total, _vector_math(tree, "MULTIPLY", value, condition))
     return total
+
+
+def _vector_math(
+    tree: bpy.types.NodeTree, operation: str, first: bpy.types.NodeSocket, second: bpy.types.NodeSocket
+) -> bpy.types.NodeSocket:
+    """The result of a Vector Math node."""
+    node = tree.nodes.new("ShaderNodeVectorMath")
+    node.operation = operation
+    tree.links.new(first, node.inputs[0])
+    tree.links.new(second, node.inputs[1])
+    return node.outputs[0]
 
 
 def _arrange(tree: bpy.types.NodeTree) -> None:

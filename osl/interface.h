@@ -22,7 +22,10 @@ Interface resolve_interface(Medium own, int spectral, float wavelength)
   /* The way through a medium that absorbs ends where another wins, so its priority counts even alone. */
   int known = absorbs(own);
   float priority = known ? shaded_priority(own.priority) : own.priority;
-  Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, priority, known, spectral, wavelength);
+  int curves = CURVES_NONE;
+  if (spectral)
+    curves = (own.disperses || wavelength > 0.0) ? CURVES_ALL : CURVES_DISPERSING;
+  Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, priority, known, curves, wavelength);
   Medium inner = own;
   inner.priority = outer.own_priority;
   Interface s;

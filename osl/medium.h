@@ -89,43 +89,45 @@ float hit_priority(output int slot)
   return (value[3] > 0.0) ? value[0] : hit_slot(slot);
 }
 
-/* How the medium's index changes with the wavelength. What white light does not need is left out unless the render is
- * spectral. */
-DispersionCurve hit_dispersion(int slot, int spectral)
+/* Which media's dispersion a surface needs. */
+#define CURVES_NONE 0       /* no path has a wavelength: only what moves the index of white light */
+#define CURVES_DISPERSING 1 /* white light that may be split: only of media that split it */
+#define CURVES_ALL 2        /* light with a wavelength, or about to get one */
+
+/* How the medium's index changes with the wavelength. What a material does not use is not exported (see _requests in
+ * addon/node_group.py) and keeps its default here. */
+DispersionCurve hit_dispersion(int slot, int curves)
 {
-  string models[MATERIAL_SLOTS] = SOCKETS("Dispersion Model");
   string starts[MATERIAL_SLOTS] = SOCKETS("Disperse");
+  string models[MATERIAL_SLOTS] = SOCKETS("Dispersion Model");
   string numbers[MATERIAL_SLOTS] = SOCKETS("Abbe");
   string strengths[MATERIAL_SLOTS] = SOCKETS("Sellmeier B");
   string resonances[MATERIAL_SLOTS] = SOCKETS("Sellmeier C");
   string spreads[MATERIAL_SLOTS] = SOCKETS("Dispersion");
-  DispersionCurve d = {0, 0, 0.0, vector(0.0), vector(0.0), 0.0};
+  DispersionCurve d = {0, DISPERSION_ABBE, 0.0, vector(0.0), vector(0.0), 0.0};
   float value[4];
-  getmessage("trace", models[slot], value);
-  d.model = (int)value[0];
-  if (spectral || d.model == DISPERSION_JF) {
-    getmessage("trace", starts[slot], value);
+  if (getmessage("trace", starts[slot], value))
     d.disperses = value[0] > 0.0;
-  }
-  if (d.model == DISPERSION_JF) {
-    getmessage("trace", spreads[slot], value);
+  if (!d.disperses && curves != CURVES_ALL)
+    return d;
+  if (getmessage("trace", models[slot], value))
+    d.model = (int)value[0];
+  if (d.model == DISPERSION_JF && getmessage("trace", spreads[slot], value))
     d.spread = value[0];
-  }
-  else if (spectral && d.model == DISPERSION_SELLMEIER) {
-    getmessage("trace", strengths[slot], value);
+  if (curves == CURVES_NONE)
+    return d;
+  if (d.model == DISPERSION_ABBE && getmessage("trace", numbers[slot], value))
+    d.abbe = value[0];
+  if (d.model == DISPERSION_SELLMEIER && getmessage("trace", strengths[slot], value)) {
     d.sellmeier_b = vector(value[0], value[1], value[2]);
     getmessage("trace", resonances[slot], value);
     d.sellmeier_c = vector(value[0], value[1], value[2]);
-  }
-  else if (spectral) {
-    getmessage("trace", numbers[slot], value);
-    d.abbe = value[0];
   }
   return d;
 }
 
 /* All of the medium that was hit last, of which hit_priority() told the priority and the slot. */
-Medium hit_medium(float priority, int known_slot, int spectral, float wavelength)
+Medium hit_medium(float priority, int known_slot, int curves, float wavelength)
 {
   string iors[MATERIAL_SLOTS] = SOCKETS("IOR");
   string transmittances[MATERIAL_SLOTS] = SOCKETS("Transmittance");
@@ -138,13 +140,14 @@ Medium hit_medium(float priority, int known_slot, int spectral, float wavelength
   if (slot >= 0) {
     float value[4];
     getmessage("trace", iors[slot], value);
-    DispersionCurve d = hit_dispersion(slot, spectral);
-    m.ior = medium_index(value[0], d, spectral, wavelength);
+    DispersionCurve d = hit_dispersion(slot, curves);
+    m.ior = medium_index(value[0], d, curves != CURVES_NONE, wavelength);
     m.disperses = d.disperses;
-    getmessage("trace", transmittances[slot], value);
-    m.transmittance = clamp(color(value[0], value[1], value[2]), color(0.0), color(1.0));
-    getmessage("trace", depths[slot], value);
-    m.transmittance_depth = value[0];
+    if (getmessage("trace", transmittances[slot], value)) {
+      m.transmittance = clamp(color(value[0], value[1], value[2]), color(0.0), color(1.0));
+      getmessage("trace", depths[slot], value);
+      m.transmittance_depth = value[0];
+    }
   }
   return m;
 }

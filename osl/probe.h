@@ -54,7 +54,7 @@ struct Surroundings {
  * own_priority is the material's until an object's own is asked for, which a surface that meets no other medium never
  * needs; own_is_known tells that it has been. */
 Surroundings probe_surroundings(
-    point origin, vector direction, float own_priority, int own_is_known, int spectral, float wavelength)
+    point origin, vector direction, float own_priority, int own_is_known, int curves, float wavelength)
 {
   float level[PROBE_LEVELS];
   int sum[PROBE_LEVELS];
@@ -100,7 +100,7 @@ Surroundings probe_surroundings(
     }
     sum[k] += hit_crossing(direction);
     if (sum[k] > 0 && priority < s.medium.priority) {
-      s.medium = hit_medium(priority, slot, spectral, wavelength);
+      s.medium = hit_medium(priority, slot, curves, wavelength);
       if (priority <= s.own_priority)
         return s;
     }

@@ -312,6 +312,22 @@ def test_without_time_the_picture_is_that_of_the_d_line():
     assert np.allclose(pictures[0], pictures[2], atol=1e-3)
 
 
+def test_motion_blur_is_followed_from_render_to_render_where_shaders_are_kept():
+    scene = dispersing_scene(32)
+    scene.render.use_persistent_data = True
+    set_band_world()
+    add_camera((0, -5, 0.3), (0, 0, 0), width=2.1)
+    add_sphere("Sphere", 1.0, material(SF11))
+    pictures = []
+    for blurred in (False, True, False):
+        scene.render.use_motion_blur = blurred
+        pictures.append(render(samples=64))
+    scene.render.use_persistent_data = False
+    colourfulness = [np.ptp(picture, axis=2).mean() / picture.mean() for picture in pictures]
+    assert colourfulness[0] < 1e-6 < 0.05 < colourfulness[1]
+    assert np.array_equal(pictures[0], pictures[2])
+
+
 def test_one_wavelength_is_reflected_totally_where_another_leaves(tmp_path):
     angle = np.radians(33.7)
     blue, red = index(SF11, 440.0), index(SF11, 660.0)
