@@ -76,8 +76,7 @@ def material_ior(values: dict, wavelength: float) -> float:
     """Index of refraction of a material at a wavelength in nm, as the shader takes it.
 
     ``values`` holds the material's parameters by keyword. Sellmeier's curve is shifted so that it goes through IOR at
-    the d line: the
-    published one if IOR is its own.
+    the d line: the published one if IOR is its own.
     """
     ior = values["ior"]
     model = values["dispersion_model"]

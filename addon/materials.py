@@ -22,6 +22,7 @@ from .parameters import (
 )
 from .presets import load_preset
 from .spectra import SpectrumError, spectral_table
+from .spectral_images import read_rows
 from .working_space import working_gamut
 
 
@@ -134,9 +135,7 @@ def material_table(material: bpy.types.Material) -> np.ndarray | None:
     image = None if tables is None else tables.image
     if image is None or not len(image.pixels):
         return None
-    rows = np.empty(len(image.pixels), dtype=np.float32)
-    image.pixels.foreach_get(rows)
-    rows = rows.reshape(image.size[1], image.size[0], -1)
+    rows = read_rows(image)
     return rows[min(node.inputs[node_group.TABLE_SOCKET].default_value, len(rows) - 1)]
 
 

@@ -326,8 +326,7 @@ def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.Node
     """A look for EEVEE: clear, with reflections towards the edges, so that what stands in a medium stays in sight.
 
     EEVEE's own refraction shows no second refracting object through the first. The reflectance is that of Schlick
-    (1994),
-    the same from inside as from outside: total reflection would hide what lies behind.
+    (1994), the same from inside as from outside: total reflection would hide what lies behind.
     """
     nodes, links = tree.nodes, tree.links
     math = partial(_math, tree)

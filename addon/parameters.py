@@ -34,10 +34,9 @@ class Parameter:
     """One parameter of the material.
 
     ``kind`` is one of ``INT``, ``FLOAT``, ``BOOL``, ``COLOR`` (scene-linear RGB), ``VECTOR``, ``MENU``, ``INDEX`` (a
-    word
-    in Python, its place among the choices in the socket: neighbours cannot read menus), ``TEXT`` and ``SHADER``;
-    ``minimum`` and ``maximum`` are hard limits, ``unit`` the subtype of the socket (``FACTOR``, ``DISTANCE``,
-    ``WAVELENGTH``, ``DIRECTION`` or empty).
+    word in Python, its place among the choices in the socket: neighbours cannot read menus), ``TEXT`` and
+    ``SHADER``; ``minimum`` and ``maximum`` are hard limits, ``unit`` the subtype of the socket (``FACTOR``,
+    ``DISTANCE``, ``WAVELENGTH``, ``DIRECTION`` or empty).
     """
 
     name: str

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import bpy
@@ -22,8 +22,7 @@ AT_LEAST = {
 }
 """Limits a path through nested media needs: an invalid surface costs a transparent bounce, an interface a transmission
 or glossy one. In a white world the glass of iced water loses 4.7 % of its light at Blender's 12 bounces, 0.3 % at 64
-and
-0.08 % at 256.
+and 0.08 % at 256.
 """
 
 
@@ -49,13 +48,7 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     """
     require_blender()
     changes: list[str] = []
-
-    def ensure(owner: Any, attribute: str, value: Any, label: str) -> None:
-        before = getattr(owner, attribute)
-        if before != value:
-            setattr(owner, attribute, value)
-            changes.append(f"{label}: {before} -> {value}")
-
+    ensure = partial(_ensure, changes)
     ensure(scene.render, "engine", "CYCLES", "Render Engine")
     ensure(scene.cycles, "shading_system", True, "Open Shading Language")
     ensure(scene.cycles, "device", "CPU", "Device")
@@ -65,7 +58,7 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     problems = []
     dispersing = dispersing_materials(scene)
     if dispersing:
-        _ensure_random_time(scene, ensure, changes)
+        _ensure_random_time(changes, scene)
     for material in dispersing:
         try:
             if refresh_spectrum(material):
@@ -75,13 +68,20 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     return Preparation(tuple(changes), tuple(problems + find_problems(scene)))
 
 
-def _ensure_random_time(scene: bpy.types.Scene, ensure: Callable, changes: list[str]) -> None:
+def _ensure(changes: list[str], owner: Any, attribute: str, value: Any, label: str) -> None:
+    before = getattr(owner, attribute)
+    if before != value:
+        setattr(owner, attribute, value)
+        changes.append(f"{label}: {before} -> {value}")
+
+
+def _ensure_random_time(changes: list[str], scene: bpy.types.Scene) -> None:
     """Make Cycles draw a time for every path, evenly. Motion blur that is in use stays as it is."""
     if not scene.render.use_motion_blur:
-        ensure(scene.render, "motion_blur_shutter", 0.0, "Shutter")
-        ensure(scene.render, "use_motion_blur", True, "Motion Blur")
+        _ensure(changes, scene.render, "motion_blur_shutter", 0.0, "Shutter")
+        _ensure(changes, scene.render, "use_motion_blur", True, "Motion Blur")
     if achromatic_reason(scene):
-        ensure(scene.cycles, "rolling_shutter_type", "NONE", "Rolling Shutter")
+        _ensure(changes, scene.cycles, "rolling_shutter_type", "NONE", "Rolling Shutter")
         mapping = scene.render.motion_blur_shutter_curve
         for point in mapping.curves[0].points:
             point.location[1] = 1.0

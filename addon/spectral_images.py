@@ -17,6 +17,14 @@ def digest(table: np.ndarray) -> str:
     return hashlib.sha256(table.tobytes()).hexdigest()[:16]
 
 
+def read_rows(image: bpy.types.Image) -> np.ndarray:
+    """Return an image's tables, from the bottom up; (rows, entries, 4)."""
+    width, height = image.size
+    rows = np.empty((height, width, image.channels), dtype=np.float32)
+    image.pixels.foreach_get(rows.ravel())
+    return rows
+
+
 def ensure_row(image: bpy.types.Image | None, table: np.ndarray) -> tuple[bpy.types.Image, int]:
     """Return an image that holds a table of shape (entries, 4), and the table's row in it.
 
@@ -27,12 +35,8 @@ def ensure_row(image: bpy.types.Image | None, table: np.ndarray) -> tuple[bpy.ty
     known = [] if image is None else list(image[TABLES])
     if name in known:
         return image, known.index(name)
-    rows = np.empty((len(known) + 1, *table.shape), dtype=np.float32)
-    if image is not None:
-        old = np.empty(rows[:-1].size, dtype=np.float32)
-        image.pixels.foreach_get(old)
-        rows[:-1] = old.reshape(rows[:-1].shape)
-    rows[-1] = table
+    old = np.empty((0, *table.shape), dtype=np.float32) if image is None else read_rows(image)
+    rows = np.concatenate([old, table[None].astype(np.float32)])
 
     taller = bpy.data.images.new(IMAGE_NAME, len(table), len(rows), alpha=True, float_buffer=True, is_data=True)
     taller.alpha_mode = "CHANNEL_PACKED"

@@ -369,10 +369,8 @@ def test_motion_and_colour_do_not_correlate():
     scene.frame_set(1)
     picture = render(samples=1024)
     # Light that meets the pane straight on is not parted in space, so the stripe's trail is white along its whole
-    # length. A
-    # pixel sees it for a fifth of the time, which leaves 1.2 / sqrt(1024 / 5) = 0.08 of noise in a channel, and a
-    # column of the stripe's
-    # 6 pixels 0.03.
+    # length. A pixel sees it for a fifth of the time, which leaves 1.2 / sqrt(1024 / 5) = 0.08 of noise in a channel,
+    # and a column of the stripe's 6 pixels 0.03.
     trail = picture[13:19].mean(axis=0)
     trail = trail[trail.mean(axis=1) > 0.1]
     assert len(trail) > 12
