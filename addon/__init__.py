@@ -10,10 +10,13 @@
     print(nd.prepare(bpy.context.scene))
 """
 
+from .caustics import set_shadow_caustics
 from .compatibility import UnsupportedError
+from .lights import light_carriers
 from .materials import new_material
 from .media import assign, get_priority, set_priority
 from .parameters import ParameterError
+from .passes import add_passes
 from .preparation import Preparation, prepare
 from .presets import preset_names
 from .registration import register, unregister
@@ -22,12 +25,15 @@ __all__ = [
     "ParameterError",
     "Preparation",
     "UnsupportedError",
+    "add_passes",
     "assign",
     "get_priority",
+    "light_carriers",
     "new_material",
     "prepare",
     "preset_names",
     "register",
     "set_priority",
+    "set_shadow_caustics",
     "unregister",
 ]

@@ -10,6 +10,7 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 
 from . import meshes
+from .lights import carried_lamps, light_carriers, listed_lamps
 from .materials import dielectric_node, dielectrics, medium_material
 from .media import dispersing_materials, get_priority, media
 from .node_group import MATERIAL_SLOTS, SOURCE_HASH
@@ -49,6 +50,8 @@ def find_problems(scene: bpy.types.Scene) -> list[Problem]:
     problems += _overlap_problems(shapes)
     if dispersing_materials(scene):
         problems += _dispersion_problems(scene)
+    if objects:
+        problems += _lamp_problems(scene)
     return problems
 
 
@@ -183,6 +186,24 @@ def _dispersion_problems(scene: bpy.types.Scene) -> list[Problem]:
         for layer in scene.view_layers
         if layer.use_pass_vector
     ]
+    return problems
+
+
+def _lamp_problems(scene: bpy.types.Scene) -> list[Problem]:
+    """Lamps whose light gets lost between rays and lobes."""
+    problems = [
+        Problem(
+            carrier.lamp,
+            f"is left out of refraction or reflection by its Ray Visibility, and no lobe carries it, because {carrier.reason}",
+            "switch Transmission and Glossy on, or give it a plain colour and strength",
+        )
+        for carrier in light_carriers(scene)
+        if carrier.reason
+    ]
+    if listed_lamps() != carried_lamps(scene):
+        problems.append(
+            Problem(scene.name, "has other lamps for direct refraction and reflection than its media know", "prepare it again")
+        )
     return problems
 
 

@@ -17,6 +17,8 @@ import numpy as np
 
 from .compatibility import require_blender
 from .iced_water import build_scene
+from .jf import JfError, read_nodes, report, translate
+from .materials import dielectric_node, new_material
 from .parameters import ParameterError
 from .preparation import prepare
 from .presets import load_preset, preset_names
@@ -40,7 +42,7 @@ def main(arguments: list[str] | None = None) -> int:
         return int(stop.code or 0)
     try:
         options.run(options)
-    except (_Failure, ParameterError, SpectrumError, OSError, RuntimeError) as error:
+    except (_Failure, JfError, ParameterError, SpectrumError, OSError, RuntimeError) as error:
         print(f"{PROGRAM}: error: {' '.join(str(error).split())}", file=sys.stderr)
         return 1
     return 0
@@ -101,6 +103,17 @@ def _parser() -> argparse.ArgumentParser:
     )
     bake.add_argument("--plot", type=Path, metavar="PLOT.png", help="also draw it; needs matplotlib")
     bake.set_defaults(run=_bake)
+
+    migration = commands.add_parser(
+        "import-jf",
+        help="make materials of Arnold's jf_nested_dielectric nodes, in the open .blend or an empty one",
+        allow_abbrev=False,
+    )
+    migration.add_argument("file", type=Path, metavar="FILE", help="an Arnold scene (.ass), or parameters (.json)")
+    migration.add_argument(
+        "-o", "--output", type=Path, metavar="FILE.blend", help="file to write (default: beside FILE, if it is new)"
+    )
+    migration.set_defaults(run=_import_jf)
     return parser
 
 
@@ -181,6 +194,38 @@ def _bake(options: argparse.Namespace) -> None:
         options.plot.write_bytes(drawing)
         written += f", and {options.plot.resolve()}"
     print(f"wrote {written}")
+
+
+def _import_jf(options: argparse.Namespace) -> None:
+    translations = [translate(node) for node in read_nodes(options.file)]
+    output = options.output or options.file.with_suffix(".blend")
+    if output.suffix.lower() != ".blend":
+        raise _Failure(f"{output}: the ending must be .blend")
+    if options.output is None and output.exists():
+        raise _Failure(f"{output} is there already; name the file to write with --output")
+    if not bpy.data.filepath:
+        bpy.ops.wm.read_homefile(use_empty=True)
+    for line in report(translations):
+        print(line)
+    for translation in translations:
+        material = new_material(translation.name, **translation.keywords)
+        if material.name != translation.name:
+            print(f"{translation.name}: name: the material is called {material.name!r}")
+        material.use_fake_user = True  # or the file would lose it
+        for socket, colour in translation.emission.items():
+            _add_emission(material, socket, colour)
+    output.parent.mkdir(parents=True, exist_ok=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(output.resolve()), copy=True)
+    print(f"wrote {len(translations)} material{'s' * (len(translations) != 1)} to {output.resolve()}")
+
+
+def _add_emission(material: bpy.types.Material, socket: str, colour: tuple[float, float, float]) -> None:
+    tree, dielectric = material.node_tree, dielectric_node(material)
+    emission = tree.nodes.new("ShaderNodeEmission")
+    emission.inputs["Color"].default_value = (*colour, 1.0)
+    emission.label = socket
+    emission.location = (-260.0, -160.0 * len(tree.nodes))
+    tree.links.new(emission.outputs["Emission"], dielectric.inputs[socket])
 
 
 def _draw(path: Path, distribution: str, table: np.ndarray) -> bytes:

@@ -20,6 +20,7 @@ from .spectral_images import TABLES, digest, ensure_row
 
 SHADER_FILE = "nested_dielectric.osl"
 COORDINATE_FILE = "spectral_coordinate.osl"
+LIGHT_FILE = "light.osl"
 MATERIAL_SLOTS = 8
 """As in osl/medium.h: slots of an object in which neighbours look for its dielectric."""
 
@@ -27,6 +28,14 @@ CYCLES_OUTPUT = "Surface"
 VOLUME_OUTPUT = "Volume"
 PREVIEW_OUTPUT = "Preview"
 SOURCE_HASH = "nd_source"
+
+LIGHTS_NAME = "Nested Dielectric Lights"
+LIGHT_OUTPUTS = {"Way": "VECTOR", "Distance": "FLOAT", "Light": "VECTOR", "Total": "FLOAT", "Carried": "VECTOR"}
+EMITTER_OUTPUT = "Emitter"
+LAMPS_OUTPUT = "Lamps"
+"""Outputs of the group of the scene's lights: a drawn point of a light, as osl/light.osl has it, an emission of 1, and
+how many lamps there are.
+"""
 
 TABLE_SOCKET = "Spectral Table"
 MEANS_SOCKET = "Spectral Table Means"
@@ -55,12 +64,12 @@ def ensure_group() -> bpy.types.NodeTree:
     use it. Raises :class:`~nested_dielectric.compatibility.UnsupportedError` when this Blender compiles no OSL; nothing
     has been made then.
     """
-    sources = {name: inlined_source(name) for name in (SHADER_FILE, COORDINATE_FILE)}
+    sources = {name: inlined_source(name) for name in (SHADER_FILE, COORDINATE_FILE, LIGHT_FILE)}
     version = hashlib.sha256(f"{sources}{SOCKETS}".encode()).hexdigest()
     for tree in bpy.data.node_groups:
         if tree.get(SOURCE_HASH) == version and tree.library is None:
             return tree
-    scripts = {name: _Script(name, source, compiled(source)) for name, source in sources.items()}
+    scripts = {name: make_script(name) for name in (SHADER_FILE, COORDINATE_FILE)}
     tree = bpy.data.node_groups.new(GROUP_NAME, "ShaderNodeTree")
     tree[SOURCE_HASH] = version
     tree.description = "A dielectric that knows the media it touches"
@@ -70,7 +79,7 @@ def ensure_group() -> bpy.types.NodeTree:
 
 
 @dataclass(frozen=True)
-class _Script:
+class Script:
     """A shader's file name, source and bytecode."""
 
     name: str
@@ -85,6 +94,24 @@ class _Script:
         text = bpy.data.texts.new(self.name)
         text.from_string(self.source)
         return text
+
+
+def make_script(name: str) -> Script:
+    """Compile a shader of the folder `osl`; raises as :func:`compiled` does."""
+    source = inlined_source(name)
+    return Script(name, source, compiled(source))
+
+
+def ensure_lights() -> bpy.types.NodeTree:
+    """Return this file's group of the scene's lights, made empty on first use."""
+    tree = next((tree for tree in bpy.data.node_groups if tree.name == LIGHTS_NAME and tree.library is None), None)
+    if tree is None:
+        tree = bpy.data.node_groups.new(LIGHTS_NAME, "ShaderNodeTree")
+        tree.description = "Lights that direct refraction and direct reflection carry; made by Prepare"
+        for name, kind in (LIGHT_OUTPUTS | {EMITTER_OUTPUT: "SHADER", LAMPS_OUTPUT: "INT"}).items():
+            tree.interface.new_socket(name, in_out="OUTPUT", socket_type=_SOCKET_TYPES[kind])
+        tree.nodes.new("NodeGroupOutput")
+    return tree
 
 
 def table_row(tree: bpy.types.NodeTree, table: np.ndarray) -> int:
@@ -175,7 +202,7 @@ def _set_limits(socket: bpy.types.NodeTreeInterfaceSocket, parameter: Parameter)
         socket.default_value = parameter.default
 
 
-def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
+def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     nodes, links = tree.nodes, tree.links
     inputs = nodes.new("NodeGroupInput")
     outputs = nodes.new("NodeGroupOutput")
@@ -185,13 +212,20 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
     kinds |= {
         "Requests": "COLOR",
         "CountsPortals": "SHADER",
+        "Emitter": "SHADER",
+        "Lamps": "INT",
+        "LightWay": "VECTOR",
+        "LightDistance": "FLOAT",
+        "LightColor": "VECTOR",
+        "LightTotal": "FLOAT",
+        "LightCarried": "VECTOR",
         "Spectral": "INT",
         "Table": "INT",
         "TableMeans": "VECTOR",
         "Weight": "COLOR",
         "Wavelength": "FLOAT",
     }
-    script = _add_script(
+    script = add_script(
         tree, "Nested Dielectric Shader", scripts[SHADER_FILE], kinds, {"BSDF": "SHADER", "Running": "FLOAT"}
     )
 
@@ -211,6 +245,14 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
     links.new(tables.outputs["Color"], script.inputs["Weight"])
     links.new(tables.outputs["Alpha"], script.inputs["Wavelength"])
 
+    lights = nodes.new("ShaderNodeGroup")
+    lights.node_tree = ensure_lights()
+    lights.name = lights.label = LIGHTS_NAME
+    for name in LIGHT_OUTPUTS:
+        links.new(lights.outputs[name], script.inputs["LightColor" if name == "Light" else f"Light{name}"])
+    for name in (EMITTER_OUTPUT, LAMPS_OUTPUT):
+        links.new(lights.outputs[name], script.inputs[name])
+
     # Not an emitter: Cycles would take every glass for a lamp and spend light samples on it.
     alarm = nodes.new("ShaderNodeBsdfDiffuse")
     alarm.inputs["Color"].default_value = (1.0, 0.0, 1.0, 1.0)
@@ -225,8 +267,8 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, _Script]) -> None:
     _arrange(tree)
 
 
-def _add_script(
-    tree: bpy.types.NodeTree, name: str, script: _Script, inputs: dict[str, str], outputs: dict[str, str]
+def add_script(
+    tree: bpy.types.NodeTree, name: str, script: Script, inputs: dict[str, str], outputs: dict[str, str]
 ) -> bpy.types.ShaderNodeScript:
     """A Script node with the compiled shader in it, where it stays with the file, and with its sockets.
 
@@ -246,7 +288,7 @@ def _add_script(
 
 
 def _spectral_tables(
-    tree: bpy.types.NodeTree, table: bpy.types.NodeSocket, script: _Script
+    tree: bpy.types.NodeTree, table: bpy.types.NodeSocket, script: Script
 ) -> bpy.types.ShaderNodeTexImage:
     """The image of spectral tables, read where the path's wavelength stands in it.
 
@@ -254,7 +296,7 @@ def _spectral_tables(
     """
     nodes, links = tree.nodes, tree.links
     shutter = _view_layer_attribute(tree, "render.motion_blur_shutter")
-    coordinate = _add_script(
+    coordinate = add_script(
         tree,
         COORDINATE_NODE,
         script,
@@ -475,6 +517,7 @@ def _arrange(tree: bpy.types.NodeTree) -> None:
         "ShaderNodeBsdfAnisotropic": 2,
         "ShaderNodeScript": 2,
         "ShaderNodeTexImage": 1,
+        "ShaderNodeGroup": 1,
         "ShaderNodeSeparateColor": 1,
         "ShaderNodeLightPath": 1,
         "ShaderNodeMath": 2,

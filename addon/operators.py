@@ -5,7 +5,8 @@ from math import isnan
 
 import bpy
 
-from . import media
+from . import lights, media
+from .caustics import set_shadow_caustics
 from .choice import Choice
 from .compatibility import UnsupportedError, blender_problem
 from .dispersion import LINE_D, sellmeier_ior
@@ -18,9 +19,20 @@ from .materials import (
     spectrum_settings,
 )
 from .parameters import BY_KEYWORD, DISPERSION_MODELS, ParameterError, check_keywords
+from .passes import add_passes
 from .preparation import prepare
 from .presets import load_preset, preset_names
 from .spectra import DISTRIBUTIONS, GAMUTS, SpectrumError, illuminant_names
+
+LAMP_CARRIERS = (
+    Choice(
+        "LOBE",
+        "Lobe",
+        "Media show lamps in a lobe where their light leaves them: for small lamps, which rays hardly find",
+    ),
+    Choice("RAYS", "Rays", "Cycles' rays find lamps, as they find all else"),
+)
+"""What brings the light of lamps through media."""
 
 SELLMEIER_REMEDY = "correct Sellmeier B and C; C holds squares of wavelengths in square micrometres"
 
@@ -364,9 +376,116 @@ class Prepare(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class LampCarrier(bpy.types.Operator):
+    """Let lobes or rays bring the light of the selected lamps, or of all if none is selected, through media"""
+
+    bl_idname = "nested_dielectric.lamp_carrier"
+    bl_label = "Refract Lamps by Lobe"
+    bl_options = {"REGISTER", "UNDO"}
+
+    carrier: bpy.props.EnumProperty(name="Carrier", items=_choice_items(LAMP_CARRIERS))
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        meaning = next(choice.description for choice in LAMP_CARRIERS if choice.keyword == properties.carrier)
+        return f"{meaning}. Sets Ray Visibility > Transmission of the selected lamps, or of all if none is selected"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not any(obj.type == "LIGHT" for obj in context.scene.objects):
+            cls.poll_message_set("The scene has no lamp; add one first")
+            return False
+        return _supported(cls)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        everything = lights.lamps(context.scene)
+        chosen = [lamp for lamp in everything if lamp in (context.selected_objects or ())] or everything
+        by_rays = self.carrier == lights.RAYS
+        changed = []
+        for lamp in chosen:
+            reason = "" if by_rays else lights.unsuitable(lamp)
+            if not lamp.is_editable:
+                self.report({"WARNING"}, f"{lamp.name!r} belongs to a library; make it local first")
+            elif reason:
+                self.report({"WARNING"}, f"{lamp.name!r} stays with rays, because {reason}")
+            elif lamp.visible_transmission != by_rays:
+                lamp.visible_transmission = by_rays
+                changed.append(lamp.name)
+        try:
+            updated = lights.update_lights(context.scene)
+        except UnsupportedError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        if changed:
+            self.report({"INFO"}, f"{'Rays' if by_rays else 'Lobes'} refract {', '.join(changed)}")
+        elif not updated:
+            self.report({"INFO"}, "Nothing to change")
+        return {"FINISHED"}
+
+
+class _SceneOperator(bpy.types.Operator):
+    """What operators share that change a scene with media and say what they changed."""
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not media.media(context.scene):
+            cls.poll_message_set("The scene has no medium; assign a preset first")
+            return False
+        return _supported(cls)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        for change in self.change(context.scene) or ("Nothing to change",):
+            self.report({"INFO"}, change)
+        return {"FINISHED"}
+
+
+class ShadowCaustics(_SceneOperator):
+    """Switch Cycles' shadow caustics on or off: media cast them, all other objects receive them, lamps make them"""
+
+    bl_idname = "nested_dielectric.shadow_caustics"
+    bl_label = "Shadow Caustics"
+
+    enable: bpy.props.BoolProperty(name="Enable", description="Switch shadow caustics on", default=True)
+
+    def change(self, scene: bpy.types.Scene) -> tuple[str, ...]:
+        return set_shadow_caustics(scene, self.enable)
+
+
+class AddPasses(_SceneOperator):
+    """Write direct and indirect refraction and reflection to the layers of an OpenEXR file beside the output"""
+
+    bl_idname = "nested_dielectric.add_passes"
+    bl_label = "Add Passes"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not super().poll(context):
+            return False
+        if context.scene.render.engine != "CYCLES":
+            cls.poll_message_set("Passes need Cycles; prepare the scene first")
+            return False
+        return True
+
+    def change(self, scene: bpy.types.Scene) -> tuple[str, ...]:
+        return add_passes(scene)
+
+
 def draw_preset_menu(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     """The presets as a submenu of a menu of Blender's."""
     self.layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Nested Dielectric")
 
 
-CLASSES = (AssignPreset, PriorityMove, PriorityOwn, DispersionModel, SellmeierIor, Spectrum, Prepare)
+CLASSES = (
+    AssignPreset,
+    PriorityMove,
+    PriorityOwn,
+    DispersionModel,
+    SellmeierIor,
+    Spectrum,
+    Prepare,
+    LampCarrier,
+    ShadowCaustics,
+    AddPasses,
+)

@@ -10,8 +10,9 @@ import bpy
 
 from .checks import Problem, find_problems
 from .compatibility import achromatic_reason, require_blender
+from .lights import update_lights
 from .materials import refresh_spectrum
-from .media import dispersing_materials
+from .media import dispersing_materials, media
 from .parameters import ParameterError
 
 AT_LEAST = {
@@ -42,7 +43,8 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     """Set what a scene needs to render nested dielectrics, and look for problems with its media.
 
     Cycles on the CPU with Open Shading Language, and enough bounces; where a medium disperses, the motion blur that
-    carries the wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space.
+    carries the wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space; the
+    lamps that direct refraction and reflection carry.
     Larger limits stay. A second call changes nothing. Raises
     :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
     """
@@ -55,6 +57,8 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     for attribute, least in AT_LEAST.items():
         label = scene.cycles.bl_rna.properties[attribute].name
         ensure(scene.cycles, attribute, max(least, getattr(scene.cycles, attribute)), label)
+    if media(scene) and update_lights(scene):
+        changes.append("Lamps of direct refraction and reflection: listed again")
     problems = []
     dispersing = dispersing_materials(scene)
     if dispersing:

@@ -14,6 +14,33 @@ float fresnel_dielectric(float cos_i, float eta)
   return 0.5 * a * a * (1.0 + b * b);
 }
 
+/* Reflectance of light that is polarised across (x) and in (y) the plane of incidence (Fresnel 1823). */
+vector fresnel_polarised(float cos_i, float eta)
+{
+  float g2 = eta * eta - 1.0 + cos_i * cos_i;
+  if (g2 <= 0.0)
+    return vector(1.0, 1.0, 0.0);
+  float g = sqrt(g2);
+  float across = (cos_i - g) / (cos_i + g);
+  float within = (eta * eta * cos_i - g) / (eta * eta * cos_i + g);
+  return vector(across * across, within * within, 0.0);
+}
+
+/* What an ideal filter that lets light through along `filter` makes of a surface's reflectance (x) and transmittance
+ * (y), as factors; light that comes to the surface is unpolarised, and the exposure makes up for the half that the
+ * filter takes (Malus 1809). */
+vector polarised(vector filter, normal n, float cos_i, float eta)
+{
+  float f = fresnel_dielectric(cos_i, eta);
+  vector crossed = filter - I * dot(filter, I);
+  vector plane = n - I * dot(n, I);
+  float within = dot(crossed, plane);
+  within *= within / max(dot(crossed, crossed) * dot(plane, plane), 1e-20);
+  vector reflectances = fresnel_polarised(cos_i, eta);
+  float filtered = mix(reflectances[0], reflectances[1], min(within, 1.0));
+  return vector(filtered / max(f, 1e-12), (1.0 - filtered) / max(1.0 - f, 1e-12), 0.0);
+}
+
 /* Reflectance at normal incidence. */
 float fresnel_normal(float eta)
 {

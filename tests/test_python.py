@@ -293,6 +293,13 @@ def test_the_shader_takes_exactly_the_tables_parameters():
     assert inputs == [parameter.osl_name for parameter in parameters.SOCKETS] + [
         "Requests",
         "CountsPortals",
+        "Emitter",
+        "Lamps",
+        "LightWay",
+        "LightDistance",
+        "LightColor",
+        "LightTotal",
+        "LightCarried",
         "Spectral",
         "Table",
         "TableMeans",

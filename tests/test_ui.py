@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import nested_dielectric as nd
-from nested_dielectric import materials, media, operators, panels, registration, spectra
+from nested_dielectric import lights, materials, media, operators, panels, registration, spectra
 from nested_dielectric.parameters import BY_KEYWORD
 
 
@@ -507,3 +507,117 @@ def test_a_picture_is_drawn_once_for_every_table_in_encoded_colours(monkeypatch)
     # The ground, 0.01, and the top of the curve, 1, in 8 bit.
     np.testing.assert_allclose(pixels[-1, 0], (0.0998, 0.0998, 0.0998, 1.0), atol=0.5 / 255)
     assert pixels[0, :, :3].max() == 1.0
+
+
+def add_lamp(name, **visibility):
+    bpy.ops.object.light_add(type="POINT")
+    lamp = bpy.context.object
+    lamp.name = name
+    for attribute, value in visibility.items():
+        setattr(lamp, attribute, value)
+    return lamp
+
+
+def carriers():
+    return {carrier.lamp: carrier.refraction for carrier in nd.light_carriers(bpy.context.scene)}
+
+
+def test_a_button_gives_the_selected_lamps_to_the_lobe_and_back_and_all_where_none_is_selected(capfd):
+    for name in "AB":
+        add_lamp(name).select_set(name == "B")
+    bpy.context.scene.objects["A"].select_set(False)
+    assert bpy.ops.nested_dielectric.lamp_carrier(carrier="LOBE") == {"FINISHED"}
+    assert carriers() == {"A": "RAYS", "B": "LOBE"}
+    assert [lamp.name for lamp in lights.listed_lamps()] == ["B"]
+    bpy.context.scene.objects["B"].select_set(False)
+    bpy.ops.nested_dielectric.lamp_carrier(carrier="LOBE")
+    assert carriers() == {"A": "LOBE", "B": "LOBE"}
+    bpy.ops.nested_dielectric.lamp_carrier(carrier="RAYS")
+    assert carriers() == {"A": "RAYS", "B": "RAYS"}
+    assert lights.listed_lamps() == []
+    bpy.ops.nested_dielectric.lamp_carrier(carrier="RAYS")
+    output = "".join(capfd.readouterr())
+    for report in ("Lobes refract B", "Lobes refract A", "Rays refract A, B", "Nothing to change"):
+        assert f"Info: {report}\n" in output
+
+
+def test_a_lamp_that_no_lobe_can_carry_stays_with_rays(capfd):
+    add_lamp("A").data.normalize = False
+    bpy.ops.nested_dielectric.lamp_carrier(carrier="LOBE")
+    assert carriers() == {"A": "RAYS"}
+    assert "Warning: 'A' stays with rays, because its strength is not normalized" in "".join(capfd.readouterr())
+
+
+def test_undo_takes_a_lamp_caustics_and_passes_back():
+    bpy.context.scene.render.engine = "CYCLES"
+    add_media(A=1)
+    add_lamp("Lamp")
+    bpy.ops.ed.undo_push(message="lamp")
+    bpy.ops.nested_dielectric.lamp_carrier("EXEC_DEFAULT", True, carrier="LOBE")
+    bpy.ops.nested_dielectric.shadow_caustics("EXEC_DEFAULT", True, enable=True)
+    bpy.ops.nested_dielectric.add_passes("EXEC_DEFAULT", True)
+
+    def state():
+        scene = bpy.context.scene
+        passes = scene.compositing_node_group is not None and scene.view_layers[0].use_pass_emit
+        return carriers()["Lamp"], scene.objects["A"].cycles.is_caustics_caster, passes
+
+    assert state() == ("LOBE", True, True)
+    bpy.ops.ed.undo()
+    assert state() == ("LOBE", True, False)
+    bpy.ops.ed.undo()
+    assert state() == ("LOBE", False, False)
+    bpy.ops.ed.undo()
+    assert state() == ("RAYS", False, False)
+    assert lights.listed_lamps() == []
+
+
+def test_operators_on_the_scene_report_what_they_changed(capfd):
+    bpy.context.scene.render.engine = "CYCLES"
+    add_media(A=1)
+    add_lamp("Lamp")
+    for _ in range(2):
+        assert bpy.ops.nested_dielectric.shadow_caustics(enable=True) == {"FINISHED"}
+        assert bpy.ops.nested_dielectric.shadow_caustics(enable=False) == {"FINISHED"}
+        bpy.ops.nested_dielectric.add_passes()
+    output = "".join(capfd.readouterr())
+    assert output.count("Info: Cast Shadow Caustics of A: on") == 2
+    assert output.count("Info: Shadow Caustics of Point: off") == 2
+    assert output.count("Info: Light Group of A: Media") == output.count("Info: Nothing to change") == 1
+
+
+def test_buttons_for_lamps_and_passes_are_greyed_out_where_there_is_nothing_for_them(monkeypatch):
+    for name, message in (
+        ("lamp_carrier", "The scene has no lamp; add one first"),
+        ("shadow_caustics", "The scene has no medium; assign a preset first"),
+        ("add_passes", "The scene has no medium; assign a preset first"),
+    ):
+        with pytest.raises(RuntimeError, match=message):
+            getattr(bpy.ops.nested_dielectric, name)()
+    add_media(A=1)
+    add_lamp("Lamp")
+    with pytest.raises(RuntimeError, match="Passes need Cycles; prepare the scene first"):
+        bpy.ops.nested_dielectric.add_passes()
+    monkeypatch.setattr(operators, "blender_problem", lambda: "this Blender cannot")
+    for name in ("lamp_carrier", "shadow_caustics", "add_passes"):
+        with pytest.raises(RuntimeError, match="this Blender cannot"):
+            getattr(bpy.ops.nested_dielectric, name)()
+
+
+def test_the_panel_lists_what_carries_every_lamp_and_why_nothing_does(draw):
+    add_lamp("Beam", visible_transmission=False)
+    add_lamp("Key")
+    for name in ("Wild", "Wilder"):
+        add_lamp(name, visible_glossy=False).data.normalize = False
+    labels, _, buttons = texts(draw(panels.SidebarLampsPanel, 2000))
+    assert labels.startswith("Lamp Refraction Reflection Wild Rays None Wilder Rays None Beam Lobe Rays Key Rays Rays ")
+    assert "No lobe can carry 'Wild', 'Wilder': its strength is not normalized" in labels
+    assert set(buttons) == {"Refract by Lobe", "Refract by Rays", "On", "Off", "Add Passes"}
+
+
+def test_the_panel_stays_short_with_many_lamps(draw, monkeypatch):
+    monkeypatch.setattr(panels, "MAX_LAMPS", 2)
+    for name in "ABCDE":
+        add_lamp(name)
+    labels, _, _ = texts(draw(panels.SidebarLampsPanel))
+    assert "A Rays Rays B Rays Rays And 3 more" in labels and "C" not in labels.split()

@@ -1,0 +1,21 @@
+/* Random numbers for choices that Cycles does not make. */
+#pragma once
+
+/* Numbers of one surface that must not depend on one another. */
+#define RANDOM_NARROWING 1
+#define RANDOM_SLOPE 2 /* and 3 */
+#define RANDOM_REFLECTION 4
+#define RANDOM_LOBE 5
+#define RANDOM_LIGHTS 6 /* and on */
+
+/* A number in [0, 1). Paths meet a surface in different points, so a hash of the point is as good as drawn. */
+float random(int purpose)
+{
+  return hashnoise(P, (float)purpose);
+}
+
+/* A normally distributed number (Box and Muller 1958). */
+float random_gaussian(int purpose)
+{
+  return sqrt(-2.0 * log(1.0 - random(purpose))) * cos(M_2PI * random(purpose + 1));
+}
