@@ -17,7 +17,7 @@ from .node_group import (
     EMITTER_OUTPUT,
     LAMPS_OUTPUT,
     LIGHT_FILE,
-    LIGHT_OUTPUTS,
+    LAMP_OUTPUTS,
     add_script,
     ensure_lights,
     make_script,
@@ -25,8 +25,13 @@ from .node_group import (
 
 RAYS, LOBE, NOTHING = "RAYS", "LOBE", "NOTHING"
 
-_TYPES = ("POINT", "SUN", "SPOT", "AREA")
-"""As numbered in osl/light.osl."""
+WEAK = 1e-6
+"""As in osl/nested_dielectric.osl: so little that Cycles does not take media for lamps, and draws no light samples of
+them.
+"""
+
+_TYPES = ("POINT", "SUN", "SPOT", "AREA", "ELLIPSE")
+"""As numbered in osl/lamp.h."""
 
 _SIZES = {
     "POINT": {"Size": "data.shadow_soft_size"},
@@ -49,10 +54,10 @@ _COLORS = {"Color": "data.color", "TemperatureColor": "data.temperature_color"}
 _TRANSFORMS = {"Position": "LOC_{}", "Rotation": "ROT_{}", "Scale": "SCALE_{}"}
 
 _SOCKETS = (
-    dict.fromkeys(("Index", "Type", "Ellipse"), "INT")
+    dict.fromkeys(("Index", "Type"), "INT")
     | dict.fromkeys((*_TRANSFORMS, *_COLORS), "VECTOR")
     | dict.fromkeys((*_VALUES, "Size", "SizeY", "SpotSize", "SpotBlend", "Spread"), "FLOAT")
-    | {f"Other{name}": kind for name, kind in LIGHT_OUTPUTS.items()}
+    | {f"Other{name}": kind for name, kind in LAMP_OUTPUTS.items()}
 )
 
 
@@ -116,7 +121,7 @@ def update_lights(scene: bpy.types.Scene) -> bool:
     wanted = carried_lamps(scene)
     tree = ensure_lights()
     if listed_lamps() == wanted and all(
-        node.inputs["Type"].default_value == _TYPES.index(lamp.data.type)
+        node.inputs["Type"].default_value == _type(lamp.data)
         for lamp, node in zip(wanted, _script_nodes(tree))
     ):
         return False
@@ -127,18 +132,19 @@ def update_lights(scene: bpy.types.Scene) -> bool:
     previous = None
     script = make_script(LIGHT_FILE) if wanted else None
     for index, lamp in enumerate(wanted):
-        node = add_script(tree, lamp.name, script, _SOCKETS, LIGHT_OUTPUTS)
+        node = add_script(tree, lamp.name, script, _SOCKETS, LAMP_OUTPUTS)
         node.location = (260.0 * index, 0.0)
         _set_lamp(node, index, lamp)
         if previous is not None:
-            for name in LIGHT_OUTPUTS:
+            for name in LAMP_OUTPUTS:
                 tree.links.new(previous.outputs[name], node.inputs[f"Other{name}"])
         previous = node
     if previous is not None:
-        for name in LIGHT_OUTPUTS:
+        for name in LAMP_OUTPUTS:
             tree.links.new(previous.outputs[name], outputs.inputs[name])
         emission = tree.nodes.new("ShaderNodeEmission")
         emission.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+        emission.inputs["Strength"].default_value = WEAK
         tree.links.new(emission.outputs[0], outputs.inputs[EMITTER_OUTPUT])
         emission.location = (260.0 * (len(wanted) - 1), 300.0)
         outputs.location = (260.0 * len(wanted), 0.0)
@@ -148,6 +154,10 @@ def update_lights(scene: bpy.types.Scene) -> bool:
 def _script_nodes(tree: bpy.types.NodeTree) -> list[bpy.types.ShaderNodeScript]:
     nodes = (node for node in tree.nodes if node.type == "SCRIPT")
     return sorted(nodes, key=lambda node: node.inputs["Index"].default_value)
+
+
+def _type(light: bpy.types.Light) -> int:
+    return _TYPES.index("ELLIPSE" if light.type == "AREA" and light.shape in ("DISK", "ELLIPSE") else light.type)
 
 
 def _visibility_moves(lamp: bpy.types.Object) -> bool:
@@ -166,12 +176,10 @@ def _driving_lamp(tree: bpy.types.NodeTree, node: bpy.types.ShaderNodeScript) ->
 def _set_lamp(node: bpy.types.ShaderNodeScript, index: int, lamp: bpy.types.Object) -> None:
     light = lamp.data
     node.inputs["Index"].default_value = index
-    node.inputs["Type"].default_value = _TYPES.index(light.type)
+    node.inputs["Type"].default_value = _type(light)
     sizes = dict(_SIZES[light.type])
-    if light.type == "AREA":
-        node.inputs["Ellipse"].default_value = light.shape in ("DISK", "ELLIPSE")
-        if light.shape in ("SQUARE", "DISK"):
-            sizes["SizeY"] = sizes["Size"]
+    if light.type == "AREA" and light.shape in ("SQUARE", "DISK"):
+        sizes["SizeY"] = sizes["Size"]
     for name, path in (_VALUES | sizes).items():
         _drive(node.inputs[name], -1, lamp, path)
     for name, path in _COLORS.items():

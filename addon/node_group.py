@@ -30,11 +30,14 @@ PREVIEW_OUTPUT = "Preview"
 SOURCE_HASH = "nd_source"
 
 LIGHTS_NAME = "Nested Dielectric Lights"
-LIGHT_OUTPUTS = {"Way": "VECTOR", "Distance": "FLOAT", "Light": "VECTOR", "Total": "FLOAT", "Carried": "VECTOR"}
+LAMP_OUTPUTS = (
+    {"Kind": "FLOAT", "Total": "FLOAT"}
+    | dict.fromkeys(("Centre", "Axis", "EdgeX", "EdgeY", "Shape", "Strength", "Carried"), "VECTOR")
+)
 EMITTER_OUTPUT = "Emitter"
 LAMPS_OUTPUT = "Lamps"
-"""Outputs of the group of the scene's lights: a drawn point of a light, as osl/light.osl has it, an emission of 1, and
-how many lamps there are.
+"""Outputs of the group of the scene's lamps: one that was drawn, as osl/light.osl has it, a weak emission, and how
+many lamps there are.
 """
 
 TABLE_SOCKET = "Spectral Table"
@@ -108,7 +111,7 @@ def ensure_lights() -> bpy.types.NodeTree:
     if tree is None:
         tree = bpy.data.node_groups.new(LIGHTS_NAME, "ShaderNodeTree")
         tree.description = "Lights that direct refraction and direct reflection carry; made by Prepare"
-        for name, kind in (LIGHT_OUTPUTS | {EMITTER_OUTPUT: "SHADER", LAMPS_OUTPUT: "INT"}).items():
+        for name, kind in (LAMP_OUTPUTS | {EMITTER_OUTPUT: "SHADER", LAMPS_OUTPUT: "INT"}).items():
             tree.interface.new_socket(name, in_out="OUTPUT", socket_type=_SOCKET_TYPES[kind])
         tree.nodes.new("NodeGroupOutput")
     return tree
@@ -214,11 +217,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         "CountsPortals": "SHADER",
         "Emitter": "SHADER",
         "Lamps": "INT",
-        "LightWay": "VECTOR",
-        "LightDistance": "FLOAT",
-        "LightColor": "VECTOR",
-        "LightTotal": "FLOAT",
-        "LightCarried": "VECTOR",
+        **{f"Lamp{name}": kind for name, kind in LAMP_OUTPUTS.items()},
         "Spectral": "INT",
         "Table": "INT",
         "TableMeans": "VECTOR",
@@ -248,8 +247,8 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     lights = nodes.new("ShaderNodeGroup")
     lights.node_tree = ensure_lights()
     lights.name = lights.label = LIGHTS_NAME
-    for name in LIGHT_OUTPUTS:
-        links.new(lights.outputs[name], script.inputs["LightColor" if name == "Light" else f"Light{name}"])
+    for name in LAMP_OUTPUTS:
+        links.new(lights.outputs[name], script.inputs[f"Lamp{name}"])
     for name in (EMITTER_OUTPUT, LAMPS_OUTPUT):
         links.new(lights.outputs[name], script.inputs[name])
 

@@ -1,6 +1,7 @@
 /* How much light a rough surface sends from one direction into another. */
 #pragma once
 
+#include "lamp.h"
 #include "lobes.h"
 
 /* Smith's masking function Lambda (Heitz 2014, equations 68, 69, 72), where `a2` is the squared product of the width and
@@ -32,31 +33,86 @@ float width_towards(Lobe lobe, vector w)
   return (lobe.alpha_x * lobe.alpha_x * w[0] * w[0] + lobe.alpha_y * lobe.alpha_y * w[1] * w[1]) / (w[2] * w[2]);
 }
 
-/* Share of the light from direction `to_light` that leaves towards the viewer, per solid angle of the light, through
- * (`refracts`) or from the surface (Walter et al. 2007, equations 20 and 21, without the radiance's n^2, as Cycles has it).
- * eta: index on the light's side of a refracting surface over that on the viewer's. */
-float rough_light(Lobe lobe, int refracts, vector to_light, vector along, normal n, float eta)
+/* What a rough surface makes of light from a lamp. */
+struct Rough {
+  Lobe lobe;
+  int refracts;
+  vector x; /* frame of the lobe */
+  vector y;
+  vector z;
+  float eta; /* index on the lamp's side of a refracting surface over that on the viewer's */
+};
+
+Rough rough_surface(Lobe lobe, int refracts, vector along, normal n, float eta)
 {
-  vector t = along - n * dot(along, n);
-  t = (dot(t, t) > 1e-12) ? normalize(t) : normalize(cross(n, (abs(n[0]) < 0.9) ? vector(1, 0, 0) : vector(0, 1, 0)));
-  vector b = cross(n, t);
-  vector i = vector(dot(I, t), dot(I, b), dot(I, n));
-  vector o = vector(dot(to_light, t), dot(to_light, b), dot(to_light, n));
-  if (i[2] <= 1e-6 || (refracts ? o[2] >= -1e-6 : o[2] <= 1e-6))
+  Rough s;
+  s.lobe = lobe;
+  s.lobe.alpha_x = max(lobe.alpha_x, 1e-3); /* below this a lobe is a mirror to single precision */
+  s.lobe.alpha_y = max(lobe.alpha_y, 1e-3);
+  s.refracts = refracts;
+  s.eta = eta;
+  s.z = n;
+  s.x = along - n * dot(along, n);
+  if (dot(s.x, s.x) < 1e-12)
+    s.x = cross(n, (abs(n[0]) < 0.9) ? vector(1, 0, 0) : vector(0, 1, 0));
+  s.x = normalize(s.x);
+  s.y = cross(n, s.x);
+  return s;
+}
+
+/* Share of the light from a direction that leaves towards the viewer, per solid angle (Walter et al. 2007, equations 20
+ * and 21, without the radiance's n^2, as Cycles has it), and the density with which rough_way() draws the direction. */
+float rough_light(Rough s, vector way, output float density)
+{
+  density = 0.0;
+  vector i = vector(dot(I, s.x), dot(I, s.y), dot(I, s.z));
+  vector o = vector(dot(way, s.x), dot(way, s.y), dot(way, s.z));
+  if (i[2] <= 1e-6 || (s.refracts ? o[2] >= -1e-6 : o[2] <= 1e-6))
     return 0.0;
-  vector h = refracts ? -(i + eta * o) : i + o;
+  vector h = s.refracts ? i + s.eta * o : i + o;
   float size2 = dot(h, h);
   if (size2 < 1e-12)
     return 0.0;
   h *= (h[2] < 0.0) ? -1.0 / sqrt(size2) : 1.0 / sqrt(size2);
   float cos_hi = dot(h, i), cos_ho = dot(h, o);
-  if (cos_hi <= 0.0 || (refracts && cos_ho >= 0.0))
+  if (cos_hi <= 0.0 || (s.refracts && cos_ho >= 0.0))
     return 0.0;
-  Lobe wide = lobe; /* below this a lobe is a mirror to single precision */
-  wide.alpha_x = max(lobe.alpha_x, 1e-3);
-  wide.alpha_y = max(lobe.alpha_y, 1e-3);
-  float f = fresnel_dielectric(min(cos_hi, 1.0), eta);
-  float lets = refracts ? (1.0 - f) * eta * eta / size2 * abs(cos_hi * cos_ho) : 0.25 * f;
-  float shadowing = 1.0 + masking(lobe.distribution, width_towards(wide, i)) + masking(lobe.distribution, width_towards(wide, o));
-  return lets * normals_density(wide, h) / (i[2] * shadowing);
+  float normals = normals_density(s.lobe, h);
+  float f = fresnel_dielectric(min(cos_hi, 1.0), s.eta);
+  float turns = s.refracts ? s.eta * s.eta * abs(cos_ho) / size2 : 0.25 / cos_hi;
+  density = normals * h[2] * turns;
+  float shadowing = 1.0 + masking(s.lobe.distribution, width_towards(s.lobe, i)) +
+                    masking(s.lobe.distribution, width_towards(s.lobe, o));
+  return (s.refracts ? 1.0 - f : f) * normals * turns * cos_hi / (i[2] * shadowing);
+}
+
+/* Draws a direction by two numbers in [0, 1), as the microfacets' normals are distributed; zero if it leads nowhere. */
+vector rough_way(Rough s, float r1, float r2)
+{
+  float slope = (s.lobe.distribution == DISTRIBUTION_BECKMANN) ? sqrt(-log(1.0 - r1)) : sqrt(r1 / (1.0 - r1));
+  vector h = normalize(s.z - slope * (s.lobe.alpha_x * cos(M_2PI * r2) * s.x + s.lobe.alpha_y * sin(M_2PI * r2) * s.y));
+  if (dot(h, I) <= 0.0)
+    return vector(0.0);
+  return s.refracts ? refract(-I, h, 1.0 / s.eta) : reflect(-I, h);
+}
+
+/* Light of a lamp with a strength of 1 by a rough surface: a point of the lamp and a direction of the lobe, weighed by
+ * their densities (Veach and Guibas 1995). What lies between is opaque. */
+float lamp_by(Rough s, Lamp lamp)
+{
+  float sum = 0.0, density;
+  LampPoint p = lamp_point(lamp, random(RANDOM_LAMP), random(RANDOM_LAMP + 1));
+  float share = rough_light(s, p.way, density);
+  if (share * p.radiance > 0.0 && !trace(P, p.way, "maxdist", p.range * 0.9999))
+    sum = share * p.radiance / (p.density + density);
+  vector way = rough_way(s, random(RANDOM_LOBE), random(RANDOM_LOBE + 1));
+  if (dot(way, way) > 0.0) {
+    p = lamp_met(lamp, way);
+    if (p.radiance > 0.0) {
+      share = rough_light(s, way, density);
+      if (share > 0.0 && !trace(P, way, "maxdist", p.range * 0.9999))
+        sum += share * p.radiance / (p.density + density);
+    }
+  }
+  return sum;
 }
