@@ -202,7 +202,11 @@ def _lamp_problems(scene: bpy.types.Scene) -> list[Problem]:
     ]
     if listed_lamps() != carried_lamps(scene):
         problems.append(
-            Problem(scene.name, "has other lamps for direct refraction and reflection than its media know", "prepare it again")
+            Problem(
+                scene.name,
+                "has other lamps for direct refraction and reflection than its media know",
+                "prepare it again",
+            )
         )
     return problems
 

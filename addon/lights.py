@@ -106,7 +106,8 @@ def carried_lamps(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     return [
         lamp
         for lamp in lamps(scene)
-        if not unsuitable(lamp) and (not lamp.visible_transmission or not lamp.visible_glossy or _visibility_moves(lamp))
+        if not unsuitable(lamp)
+        and (not lamp.visible_transmission or not lamp.visible_glossy or _visibility_moves(lamp))
     ]
 
 
@@ -121,8 +122,7 @@ def update_lights(scene: bpy.types.Scene) -> bool:
     wanted = carried_lamps(scene)
     tree = ensure_lights()
     if listed_lamps() == wanted and all(
-        node.inputs["Type"].default_value == _type(lamp.data)
-        for lamp, node in zip(wanted, _script_nodes(tree))
+        node.inputs["Type"].default_value == _type(lamp.data) for lamp, node in zip(wanted, _script_nodes(tree))
     ):
         return False
     tree.animation_data_clear()

@@ -30,9 +30,8 @@ PREVIEW_OUTPUT = "Preview"
 SOURCE_HASH = "nd_source"
 
 LIGHTS_NAME = "Nested Dielectric Lights"
-LAMP_OUTPUTS = (
-    {"Kind": "FLOAT", "Total": "FLOAT"}
-    | dict.fromkeys(("Centre", "Axis", "EdgeX", "EdgeY", "Shape", "Strength", "Carried"), "VECTOR")
+LAMP_OUTPUTS = {"Kind": "FLOAT", "Total": "FLOAT"} | dict.fromkeys(
+    ("Centre", "Axis", "EdgeX", "EdgeY", "Shape", "Strength", "Carried"), "VECTOR"
 )
 EMITTER_OUTPUT = "Emitter"
 LAMPS_OUTPUT = "Lamps"

@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-import bpy
 import nested_dielectric as nd
 from nested_dielectric import presets
 from scenes import (

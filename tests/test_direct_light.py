@@ -1,7 +1,5 @@
 """Lamps through the lobe of direct refraction, against Cycles' own rough refraction lit by the same lamps."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -247,7 +245,9 @@ def test_direct_reflection_makes_caustics_that_can_be_switched_off():
     def floor(**keywords):
         new_scene(16)
         set_world((0.0, 0.0, 0.0))
-        material = nd.new_material("Glass", ior=2.5, roughness=0.5, shadow_mode="BLACK", refraction_scale=0.0, **keywords)
+        material = nd.new_material(
+            "Glass", ior=2.5, roughness=0.5, shadow_mode="BLACK", refraction_scale=0.0, **keywords
+        )
         add_box("Mirror", (-20, -20, 2.0), (20, 20, 2.2), material)
         add_plane("Floor", 4, (0, 0, 0), (0, 0, 1), diffuse(0.8))
         lamp = add_lamp()

@@ -9,7 +9,7 @@ import numpy as np
 
 import nested_dielectric as nd
 from nested_dielectric.materials import set_spectrum
-from scenes import add_camera, add_sphere, new_scene, read_picture, render, set_striped_world
+from scenes import add, add_camera, add_sphere, new_scene, read_picture, render, set_striped_world, set_world
 
 RENDER = """
 import bpy
@@ -39,6 +39,36 @@ def add_content() -> None:
     add_sphere("Glass", 1.0, nd.new_material("Glass", preset="glass", **tint), 2)
     add_sphere("Water", 0.7, nd.new_material("Water", preset="water"), 1, (0.5, -0.2, 0.1))
     add_sphere("Bubble", 0.3, nd.new_material("Bubble", preset="air_bubble"), None, (0.2, -0.1, 0.0))
+
+
+def add_moving_lamp() -> None:
+    """A lamp that the lobe of direct refraction carries, on its way past the glass."""
+    light = bpy.data.lights.new("Lamp", "AREA")
+    light.energy = 200.0
+    lamp = add("Lamp", light, (0.0, 3.0, 1.0))
+    lamp.rotation_euler = (-1.4, 0.0, 0.0)
+    lamp.visible_transmission = False
+    for frame, x in ((1, -9.0), (11, 1.0)):
+        lamp.location.x = x
+        lamp.keyframe_insert("location", frame=frame)
+    bpy.context.scene.frame_set(1)
+
+
+def test_a_lamp_of_the_lobe_moves_without_the_extension(tmp_path):
+    build_scene()
+    set_world((0.0, 0.0, 0.0))
+    add_moving_lamp()
+    nd.prepare(bpy.context.scene)
+    file = tmp_path / "scene.blend"
+    bpy.context.scene.cycles.samples = 16
+    bpy.context.scene.frame_set(10)
+    bpy.ops.wm.save_as_mainfile(filepath=str(file))
+    farm = render_in_fresh_process(WITHOUT_EXTENSION, file, tmp_path / "farm.exr")
+    bpy.context.scene.frame_set(1)
+    far, near = render(16).mean(), farm.mean()
+    assert near > 2.0 * far
+    bpy.context.scene.frame_set(10)
+    assert abs(near / render(16).mean() - 1.0) < 1e-3
 
 
 def test_a_saved_file_renders_bit_for_bit_the_same_without_the_extension(tmp_path):
