@@ -20,6 +20,7 @@ from .node_group import (
     LAMP_OUTPUTS,
     add_script,
     ensure_lights,
+    find_lights,
     make_script,
 )
 
@@ -113,8 +114,8 @@ def carried_lamps(scene: bpy.types.Scene) -> list[bpy.types.Object]:
 
 def listed_lamps() -> list[bpy.types.Object | None]:
     """Return the lamps that the file's group holds, in order; None for one that is no longer in the file."""
-    tree = ensure_lights()
-    return [_driving_lamp(tree, node) for node in _script_nodes(tree)]
+    tree = find_lights()
+    return [] if tree is None else [_driving_lamp(tree, node) for node in _script_nodes(tree)]
 
 
 def update_lights(scene: bpy.types.Scene) -> bool:

@@ -104,9 +104,14 @@ def make_script(name: str) -> Script:
     return Script(name, source, compiled(source))
 
 
+def find_lights() -> bpy.types.NodeTree | None:
+    """Return this file's group of the scene's lamps, or None if there is none yet."""
+    return next((tree for tree in bpy.data.node_groups if tree.name == LIGHTS_NAME and tree.library is None), None)
+
+
 def ensure_lights() -> bpy.types.NodeTree:
-    """Return this file's group of the scene's lights, made empty on first use."""
-    tree = next((tree for tree in bpy.data.node_groups if tree.name == LIGHTS_NAME and tree.library is None), None)
+    """Return this file's group of the scene's lamps, made empty on first use."""
+    tree = find_lights()
     if tree is None:
         tree = bpy.data.node_groups.new(LIGHTS_NAME, "ShaderNodeTree")
         tree.description = "Lights that direct refraction and direct reflection carry; made by Prepare"

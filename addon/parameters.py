@@ -560,8 +560,9 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Energy Cutoff Exponent",
         "Sampling",
         "FLOAT",
-        -5.0,
-        "A surface gives up reflection or refraction that carries less than 10 to this power of the light on the ray",
+        -20.0,
+        "A surface gives up reflection or refraction that carries less than 10 to this power of the light on the ray; "
+        "-20 gives up nothing",
         -20.0,
         0.0,
     ),

@@ -96,22 +96,37 @@ vector rough_way(Rough s, float r1, float r2)
   return s.refracts ? refract(-I, h, 1.0 / s.eta) : reflect(-I, h);
 }
 
-/* Light of a lamp with a strength of 1 by a rough surface: a point of the lamp and a direction of the lobe, weighed by
+/* Points of a lamp, and directions of a lobe, that are drawn at a surface. */
+#define LAMP_POINTS 4
+#define LOBE_WAYS 4
+
+/* Number k of n that are spread evenly: a lattice (Korobov 1959) that is shifted as a whole. */
+vector spread_evenly(int k, int n, float r1, float r2)
+{
+  return vector(mod(r1 + k / (float)n, 1.0), mod(r2 + k * 0.618034, 1.0), 0.0);
+}
+
+/* Light of a lamp with a strength of 1 by a rough surface: points of the lamp and directions of the lobe, weighed by
  * their densities (Veach and Guibas 1995). What lies between is opaque. */
 float lamp_by(Rough s, Lamp lamp)
 {
-  float sum = 0.0, density;
-  LampPoint p = lamp_point(lamp, random(RANDOM_LAMP), random(RANDOM_LAMP + 1));
-  float share = rough_light(s, p.way, density);
-  if (share * p.radiance > 0.0 && !trace(P, p.way, "maxdist", p.range * 0.9999))
-    sum = share * p.radiance / (p.density + density);
-  vector way = rough_way(s, random(RANDOM_LOBE), random(RANDOM_LOBE + 1));
-  if (dot(way, way) > 0.0) {
-    p = lamp_met(lamp, way);
+  float sum = 0.0;
+  float r1 = random(RANDOM_LAMP), r2 = random(RANDOM_LAMP + 1), r3 = random(RANDOM_LOBE), r4 = random(RANDOM_LOBE + 1);
+  for (int k = 0; k < LAMP_POINTS + LOBE_WAYS; k++) {
+    LampPoint p;
+    if (k < LAMP_POINTS) {
+      vector r = spread_evenly(k, LAMP_POINTS, r1, r2);
+      p = lamp_point(lamp, r[0], r[1]);
+    }
+    else {
+      vector r = spread_evenly(k - LAMP_POINTS, LOBE_WAYS, r3, r4);
+      p = lamp_met(lamp, rough_way(s, r[0], r[1]));
+    }
     if (p.radiance > 0.0) {
-      share = rough_light(s, way, density);
-      if (share > 0.0 && !trace(P, way, "maxdist", p.range * 0.9999))
-        sum += share * p.radiance / (p.density + density);
+      float density;
+      float light = rough_light(s, p.way, density) * p.radiance;
+      if (light > 0.0 && !trace(P, p.way, "maxdist", p.range * 0.9999))
+        sum += light / (LAMP_POINTS * p.density + LOBE_WAYS * density);
     }
   }
   return sum;
