@@ -11,6 +11,7 @@ from scenes import (
     add_box,
     add_camera,
     add_plane,
+    add_sphere,
     diffuse,
     new_scene,
     render,
@@ -81,6 +82,20 @@ def test_the_lobe_refracts_as_much_of_a_lamp_as_rays(kind):
     assert rays.mean() > 0.1
     # 524,288 paths leave 0.2 % on either side.
     assert lobe.mean(axis=(0, 1)) == pytest.approx(rays.mean(axis=(0, 1)), rel=1e-2)
+
+
+def test_the_lobe_refracts_as_much_through_a_rough_ball():
+    """Towards its edge the far side of a ball would reflect all light, were it smooth."""
+    means = []
+    for lobe in (False, True):
+        slab()
+        bpy.data.objects.remove(bpy.data.objects["Slab"])
+        add_sphere("Ball", 0.6, bpy.data.materials["Glass"])
+        add_lamp("AREA", lobe)
+        means.append(picture(1024).mean())
+    assert means[0] > 0.1
+    # 1,048,576 paths leave 0.3 % on either side.
+    assert means[1] == pytest.approx(means[0], rel=1e-2)
 
 
 def test_the_lobe_reflects_as_much_of_a_lamp_as_rays():
