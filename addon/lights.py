@@ -23,6 +23,7 @@ from .node_group import (
     find_lights,
     make_script,
 )
+from .shader_source import inlined_source
 
 RAYS, LOBE, NOTHING = "RAYS", "LOBE", "NOTHING"
 
@@ -131,7 +132,7 @@ def update_lights(scene: bpy.types.Scene) -> bool:
     outputs = tree.nodes.new("NodeGroupOutput")
     outputs.inputs[LAMPS_OUTPUT].default_value = len(wanted)
     previous = None
-    script = make_script(LIGHT_FILE) if wanted else None
+    script = make_script(LIGHT_FILE, inlined_source(LIGHT_FILE)) if wanted else None
     for index, lamp in enumerate(wanted):
         node = add_script(tree, lamp.name, script, _SOCKETS, LAMP_OUTPUTS)
         node.location = (260.0 * index, 0.0)

@@ -71,7 +71,7 @@ def ensure_group() -> bpy.types.NodeTree:
     for tree in bpy.data.node_groups:
         if tree.get(SOURCE_HASH) == version and tree.library is None:
             return tree
-    scripts = {name: make_script(name) for name in (SHADER_FILE, COORDINATE_FILE)}
+    scripts = {name: make_script(name, sources[name]) for name in (SHADER_FILE, COORDINATE_FILE)}
     tree = bpy.data.node_groups.new(GROUP_NAME, "ShaderNodeTree")
     tree[SOURCE_HASH] = version
     tree.description = "A dielectric that knows the media it touches"
@@ -98,9 +98,8 @@ class Script:
         return text
 
 
-def make_script(name: str) -> Script:
-    """Compile a shader of the folder `osl`; raises as :func:`compiled` does."""
-    source = inlined_source(name)
+def make_script(name: str, source: str) -> Script:
+    """Compile a shader; raises as :func:`compiled` does."""
     return Script(name, source, compiled(source))
 
 

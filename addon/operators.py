@@ -26,11 +26,11 @@ from .spectra import DISTRIBUTIONS, GAMUTS, SpectrumError, illuminant_names
 
 LAMP_CARRIERS = (
     Choice(
-        "LOBE",
+        lights.LOBE,
         "Lobe",
         "Media show lamps in a lobe where their light leaves them: for small lamps, which rays hardly find",
     ),
-    Choice("RAYS", "Rays", "Cycles' rays find lamps, as they find all else"),
+    Choice(lights.RAYS, "Rays", "Cycles' rays find lamps, as they find all else"),
 )
 """What brings the light of lamps through media."""
 

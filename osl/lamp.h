@@ -27,6 +27,12 @@ struct LampPoint {
   float radiance; /* of a lamp with a strength of 1; 0 if the lamp is not there */
 };
 
+/* A unit vector across another. */
+vector perpendicular(vector v)
+{
+  return normalize(cross(v, (abs(v[0]) < 0.9) ? vector(1, 0, 0) : vector(0, 1, 0)));
+}
+
 /* Solid angle of a cone with that squared sine of its half angle. */
 float cone(float sin2)
 {
@@ -88,9 +94,9 @@ LampPoint lamp_point(Lamp lamp, float r1, float r2)
     vector middle = normalize(lamp.centre);
     float sin2 = round_size(lamp);
     float rise = r1 * cone(sin2) / M_2PI; /* 1 - cos */
-    float across = sqrt(max(rise * (2.0 - rise), 0.0));
-    vector t = normalize(cross(middle, (abs(middle[0]) < 0.9) ? vector(1, 0, 0) : vector(0, 1, 0)));
-    p.way = middle * (1.0 - rise) + across * (t * cos(M_2PI * r2) + cross(middle, t) * sin(M_2PI * r2));
+    float aside = sqrt(max(rise * (2.0 - rise), 0.0));
+    vector t = perpendicular(middle);
+    p.way = middle * (1.0 - rise) + aside * (t * cos(M_2PI * r2) + cross(middle, t) * sin(M_2PI * r2));
     p.range = (lamp.kind == LAMP_SUN) ? 1e30 : length(lamp.centre) - lamp.shape[0];
   }
   lamp_light(lamp, p);

@@ -53,9 +53,7 @@ Rough rough_surface(Lobe lobe, int refracts, vector along, normal n, float eta)
   s.eta = eta;
   s.z = n;
   s.x = along - n * dot(along, n);
-  if (dot(s.x, s.x) < 1e-12)
-    s.x = cross(n, (abs(n[0]) < 0.9) ? vector(1, 0, 0) : vector(0, 1, 0));
-  s.x = normalize(s.x);
+  s.x = (dot(s.x, s.x) < 1e-12) ? perpendicular(n) : normalize(s.x);
   s.y = cross(n, s.x);
   return s;
 }

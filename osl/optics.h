@@ -31,12 +31,12 @@ vector fresnel_polarised(float cos_i, float eta)
  * filter takes (Malus 1809). */
 vector polarised(vector filter, normal n, float cos_i, float eta)
 {
-  float f = fresnel_dielectric(cos_i, eta);
   vector crossed = filter - I * dot(filter, I);
   vector plane = n - I * dot(n, I);
   float within = dot(crossed, plane);
   within *= within / max(dot(crossed, crossed) * dot(plane, plane), 1e-20);
   vector reflectances = fresnel_polarised(cos_i, eta);
+  float f = 0.5 * (reflectances[0] + reflectances[1]);
   float filtered = mix(reflectances[0], reflectances[1], min(within, 1.0));
   return vector(filtered / max(f, 1e-12), (1.0 - filtered) / max(1.0 - f, 1e-12), 0.0);
 }

@@ -98,14 +98,17 @@ def test_the_lobe_refracts_as_much_through_a_rough_ball():
     assert means[1] == pytest.approx(means[0], rel=1e-2)
 
 
+def off_slab(lobe=True, samples=16, **keywords):
+    """A lamp before the slab, which reflects and does not refract."""
+    slab(specular_scale=1.0, refraction_scale=0.0, **keywords)
+    lamp = add_lamp()
+    lamp.location = (0.5, -4.0, 1.5)
+    lamp.visible_glossy = not lobe
+    return picture(samples)
+
+
 def test_the_lobe_reflects_as_much_of_a_lamp_as_rays():
-    means = []
-    for seen in (True, False):
-        slab(specular_scale=1.0, refraction_scale=0.0)
-        lamp = add_lamp()
-        lamp.location = (0.5, -4.0, 1.5)
-        lamp.visible_glossy = seen
-        means.append(picture(256).mean())
+    means = [off_slab(lobe, samples=256).mean() for lobe in (False, True)]
     assert means[0] > 0.01
     assert means[1] == pytest.approx(means[0], rel=1e-2)
 
@@ -172,14 +175,7 @@ def test_the_separate_lobe_has_its_own_distribution_and_anisotropy():
 
 
 def test_direct_reflection_scales_its_lobe():
-    def reflected(**keywords):
-        slab(specular_scale=1.0, refraction_scale=0.0, **keywords)
-        lamp = add_lamp()
-        lamp.location = (0.5, -4.0, 1.5)
-        lamp.visible_glossy = False
-        return picture(16)
-
-    assert reflected(direct_reflection=0.25) == pytest.approx(0.25 * reflected(), rel=1e-4)
+    assert off_slab(direct_reflection=0.25) == pytest.approx(0.25 * off_slab(), rel=1e-4)
 
 
 def test_what_stands_between_shades_the_lobe():
