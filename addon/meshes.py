@@ -28,10 +28,68 @@ def signed_volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
     """
     if len(triangles) == 0:
         return 0.0
-    a, b, c = (vertices[triangles[:, corner]] - vertices.mean(axis=0) for corner in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
+    x, y, z = (
+        [axis[triangles[:, corner]] for corner in range(3)] for axis in (vertices - vertices.mean(axis=0)).T.copy()
+    )
+    normal_x = (y[1] - y[0]) * (z[2] - z[0]) - (z[1] - z[0]) * (y[2] - y[0])
+    return float(np.dot(normal_x, x[0] + x[1] + x[2]) / 6.0)
 
 
 def boxes_overlap(low_a: np.ndarray, high_a: np.ndarray, low_b: np.ndarray, high_b: np.ndarray) -> bool:
     """Tell whether two axis-aligned boxes share a volume."""
     return bool(np.all(np.maximum(low_a, low_b) < np.minimum(high_a, high_b)))
+
+
+def is_closed(triangles: np.ndarray) -> bool:
+    """Tell whether every directed edge is met exactly as often as its reverse, without sorting the edges.
+
+    With two random numbers r and s for every vertex, the sum of r[a] s[b] - s[a] r[b] over all directed edges is 0 if
+    the edges cancel. If they do not, it is a polynomial of the random numbers other than 0, whose value is 0 modulo
+    2**64 in less than one of 2**55 meshes (Schwartz 1980, Fast probabilistic algorithms for verification of polynomial
+    identities).
+
+    :param triangles: (n, 3) vertex indices.
+    """
+    count = int(triangles.max(initial=-1)) + 1
+    generator = np.random.default_rng(0)
+    r, s = (generator.integers(0, 2**64, count, dtype=np.uint64) for _ in range(2))
+    (ra, rb, rc), (sa, sb, sc) = ([table[triangles[:, corner]] for corner in range(3)] for table in (r, s))
+    total = ra * (sb - sc) + rb * (sc - sa) + rc * (sa - sb)
+    return int(total.sum(dtype=np.uint64)) == 0
+
+
+def connected(count: int, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return the root of the connected component of every node of a graph.
+
+    Roots are hooked onto smaller roots across all links at once, and paths to roots halved, until no link joins two
+    components (Shiloach and Vishkin 1982, An O(log n) parallel connectivity algorithm).
+
+    :param count: number of nodes.
+    :param a: one end of every link, a node's index; b: the other end.
+    :return: (count,) nodes; equal for nodes that links join.
+    """
+    root = np.arange(count)
+    while len(a):
+        root[np.maximum(a, b)] = np.minimum(a, b)
+        while not np.array_equal(above := root.take(root), root):
+            root = above.take(above)
+        a, b = root.take(a), root.take(b)
+        apart = np.flatnonzero(a != b)
+        a, b = a.take(apart), b.take(apart)
+    return root
+
+
+def solid_angles(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Return the signed solid angles of triangles about the origin, positive where it lies on their inner side.
+
+    Van Oosterom and Strackee 1983, The solid angle of a plane triangle. The sum over a closed mesh is 4 pi times its
+    winding number (Jacobson, Kavan and Sorkine-Hornung 2013, Robust inside-outside segmentation).
+
+    :param a: (n, 3) first corners; b, c: the others.
+    :return: (n,) steradians.
+    """
+    la, lb, lc = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+    cosines = (np.einsum("ij,ij->i", u, v) for u, v in ((a, b), (b, c), (c, a)))
+    ab, bc, ca = cosines
+    return 2.0 * np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb)

@@ -1,0 +1,476 @@
+"""Which media touch which: the analysis against brute force and against scenes with a known answer."""
+
+import bpy  # noqa: F401  mathutils comes with it
+import numpy as np
+import pytest
+from mathutils import Matrix
+
+from nested_dielectric import contacts, meshes
+from nested_dielectric.contacts import AIR, FACES, MEDIUM, NEVER, PROBE, Body, Memory, Solid, analyse
+
+# Face centres nearer than this to another surface may be told either way by the brute force.
+OUTSIDE = 1e-6
+
+
+def icosphere(subdivisions: int = 2, radius: float = 1.0, centre=(0.0, 0.0, 0.0)) -> Solid:
+    phi = (1.0 + 5.0**0.5) / 2.0
+    vertices = [(-1, phi, 0), (1, phi, 0), (-1, -phi, 0), (1, -phi, 0), (0, -1, phi), (0, 1, phi)]
+    vertices += [(0, -1, -phi), (0, 1, -phi), (phi, 0, -1), (phi, 0, 1), (-phi, 0, -1), (-phi, 0, 1)]
+    faces = [(0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4), (11, 10, 2), (10, 7, 6)]
+    faces += [(7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8), (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10)]
+    faces += [(8, 6, 7), (9, 8, 1)]
+    points, triangles = np.array(vertices, dtype=np.float64), np.array(faces)
+    for _ in range(subdivisions):
+        edges = np.sort(np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]), axis=1)
+        unique, index = np.unique(edges, axis=0, return_inverse=True)
+        ab, bc, ca = len(points) + index.reshape(3, -1)
+        points = np.concatenate([points, points[unique].mean(axis=1)])
+        a, b, c = triangles.T
+        triangles = np.concatenate([np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    points *= radius / np.linalg.norm(points, axis=1, keepdims=True)
+    return Solid(points + np.array(centre), triangles.astype(np.int32))
+
+
+def grid_box(low, high, cells: int = 1) -> Solid:
+    """A box whose sides are divided into cells * cells squares."""
+    steps = np.arange(cells + 1)
+    u, v = (t.ravel() for t in np.meshgrid(steps[:-1], steps[:-1], indexing="ij"))
+    points, triangles = [], []
+    for axis in range(3):
+        for end in (0, cells):
+            square = np.empty((len(u), 4, 3), dtype=np.int64)
+            square[:, :, axis] = end
+            square[:, :, (axis + 1) % 3] = np.stack([u, u + 1, u + 1, u], axis=1)
+            square[:, :, (axis + 2) % 3] = np.stack([v, v, v + 1, v + 1], axis=1)
+            if end == 0:
+                square = square[:, ::-1]
+            start = sum(len(p) for p in points)
+            points.append(square.reshape(-1, 3))
+            index = start + np.arange(4 * len(u)).reshape(-1, 4)
+            triangles += [index[:, [0, 1, 2]], index[:, [0, 2, 3]]]
+    unique, index = np.unique(np.concatenate(points), axis=0, return_inverse=True)
+    low, high = np.array(low, dtype=np.float64), np.array(high, dtype=np.float64)
+    return Solid(low + (high - low) * unique / cells, index[np.concatenate(triangles)].astype(np.int32))
+
+
+def joined(*solids: Solid) -> Solid:
+    offsets = np.cumsum([0] + [len(solid.vertices) for solid in solids])
+    triangles = [solid.triangles + offset for solid, offset in zip(solids, offsets)]
+    return Solid(np.concatenate([solid.vertices for solid in solids]), np.concatenate(triangles).astype(np.int32))
+
+
+def inverted(solid: Solid) -> Solid:
+    return Solid(solid.vertices, np.ascontiguousarray(solid.triangles[:, ::-1]))
+
+
+def at(*place: float, scale=1.0) -> np.ndarray:
+    matrix = np.diag(np.append(np.broadcast_to(scale, 3), 1.0).astype(np.float64))
+    matrix[: len(place), 3] = place
+    return matrix
+
+
+def placed(body: Body) -> np.ndarray:
+    """(m, 3, 3) triangles in the world, counterclockwise from outside."""
+    points = body.solid.vertices @ body.matrix[:3, :3].T + body.matrix[:3, 3]
+    triangles = body.solid.triangles
+    return points[triangles[:, ::-1] if np.linalg.det(body.matrix[:3, :3]) < 0.0 else triangles]
+
+
+def winding(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Winding numbers by solid angles of all triangles about all points."""
+    result = []
+    for some in np.array_split(points, max(1, len(points) * len(triangles) // 200_000)):
+        corners = (triangles[None] - some[:, None, None]).reshape(-1, 3, 3).transpose(1, 0, 2)
+        result.append(meshes.solid_angles(*corners).reshape(len(some), -1).sum(axis=1))
+    return np.rint(np.concatenate(result) / (4.0 * np.pi)).astype(int)
+
+
+def brute_force(bodies: list[Body], index: int) -> tuple[np.ndarray, np.ndarray]:
+    """For points all over each face, just outside: codes and media; (m, points)."""
+    own = placed(bodies[index])
+    normals = np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    weights = np.array([[0.9, 0.05, 0.05], [0.05, 0.9, 0.05], [0.05, 0.05, 0.9]])
+    points = (np.einsum("pc,mcx->mpx", weights, own) + OUTSIDE * normals[:, None]).reshape(-1, 3)
+    best = np.full(len(points), np.inf)
+    medium = np.full(len(points), -1)
+    for j, body in enumerate(bodies):
+        if j == index:
+            continue
+        wins = (winding(points, placed(body)) >= 1) & (body.priority < best)
+        best[wins], medium[wins] = body.priority, body.medium
+    codes = np.where(best <= bodies[index].priority, NEVER, np.where(np.isinf(best), AIR, MEDIUM))
+    return codes.reshape(len(own), -1), medium.reshape(len(own), -1)
+
+
+def codes_of(contact, body: Body) -> np.ndarray:
+    return contact.faces if contact.code == FACES else np.full(len(body.solid.triangles), contact.code)
+
+
+def assert_true(bodies: list[Body], found: list) -> None:
+    """What is said of any face is what brute force finds on all of it."""
+    for index, (body, contact) in enumerate(zip(bodies, found)):
+        codes, media = brute_force(bodies, index)
+        said = codes_of(contact, body)
+        known = said != PROBE
+        assert (codes[known] == said[known, None]).all()
+        if contact.around is not None:
+            assert (media[said == MEDIUM] == bodies[contact.around].medium).all()
+
+
+def random_matrix(rng: np.random.Generator, spread: float) -> np.ndarray:
+    linear = np.linalg.qr(rng.normal(size=(3, 3)))[0] @ np.diag(rng.uniform(0.3, 1.2, 3) * rng.choice([-1, 1], 3))
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = linear, rng.uniform(-spread, spread, 3)
+    return matrix
+
+
+def test_a_body_alone_is_in_air():
+    (contact,) = analyse([Body(icosphere(), at(), 3, "water")])
+    assert (contact.code, contact.partners, contact.level, contact.robust) == (AIR, (), None, False)
+
+
+def test_nested_spheres_know_the_medium_around_them():
+    sphere = icosphere()
+    bodies = [Body(sphere, at(scale=s), p, f"m{p}") for s, p in ((4.0, 5), (2.0, 3), (1.0, 1), (3.0, 4))]
+    found = analyse(bodies)
+    assert [c.code for c in found] == [AIR, MEDIUM, MEDIUM, MEDIUM]
+    assert [c.around for c in found] == [None, 3, 1, 0]
+    assert found[2].partners == (0, 1, 3)
+    assert [c.holders for c in found] == [0, 1, 1, 1]
+
+
+def test_a_sphere_inside_a_stronger_or_equal_one_never_exists():
+    sphere = icosphere()
+    for inner in (2, 3):
+        outer, inside = analyse([Body(sphere, at(scale=2.0), 2, 0), Body(sphere, at(), inner, 0)])
+        assert (outer.code, inside.code) == (AIR, NEVER)
+
+
+def test_a_mirrored_body_holds_what_it_surrounds():
+    sphere = icosphere()
+    found = analyse([Body(sphere, at(scale=(-2.0, 2.0, 2.0)), 2, 0), Body(sphere, at(scale=(1, -1, 1)), 1, 1)])
+    assert [c.code for c in found] == [AIR, MEDIUM]
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_codes_of_random_crossing_bodies_are_those_of_brute_force(seed):
+    rng = np.random.default_rng(seed)
+    shapes = [icosphere(2), icosphere(1), grid_box((-1, -1, -1), (1, 1, 1), 3)]
+    shapes += [joined(icosphere(1, 0.4, (-0.8, 0, 0)), icosphere(1, 0.5, (0.7, 0, 0)))]
+    shapes += [joined(icosphere(1, 1.0), inverted(icosphere(1, 0.6)))]
+    count = int(rng.integers(2, 6))
+    bodies = [
+        Body(shapes[rng.integers(len(shapes))], random_matrix(rng, rng.choice([0.3, 1.0])), int(rng.integers(1, 4)), 0)
+        for _ in range(count)
+    ]
+    bodies = [Body(b.solid, b.matrix, b.priority, b.priority) for b in bodies]
+    found = analyse(bodies)
+    assert_true(bodies, found)
+
+
+def test_only_faces_near_the_crossing_are_left_to_rays():
+    sphere = icosphere(4)
+    bodies = [Body(sphere, at(), 1, 1), Body(sphere, at(1.0, 0.1, 0.2), 2, 2)]
+    found = analyse(bodies)
+    assert [c.code for c in found] == [FACES, FACES]
+    assert [sorted(set(c.faces.tolist())) for c in found] == [[PROBE, AIR, MEDIUM], [PROBE, AIR, NEVER]]
+    assert all(np.count_nonzero(c.faces == PROBE) < 0.1 * len(sphere.triangles) for c in found)
+
+
+def test_a_body_that_takes_no_faces_is_left_to_rays_where_they_differ():
+    sphere = icosphere()
+    found = analyse([Body(sphere, at(), 1, 1, wants_faces=False), Body(sphere, at(1.0), 2, 2)])
+    assert (found[0].code, found[0].faces) == (PROBE, None)
+    assert found[1].code == FACES
+
+
+@pytest.mark.parametrize("cells", [1, 5])
+@pytest.mark.parametrize("turn", [0.0, 0.4])
+def test_a_box_standing_on_a_bigger_one_coincides_with_it(cells, turn):
+    floor = grid_box((-2, -2, -1), (2, 2, 0), cells)
+    box = grid_box((-0.7, -0.6, 0), (0.5, 0.7, 1), 2)
+    matrix = np.array(Matrix.Rotation(turn, 4, "Z"))
+    bodies = [Body(floor, at(), 1, 1), Body(box, matrix, 2, 2)]
+    found = analyse(bodies)
+    other, faces, signs = found[1].coincident[0]
+    bottom = np.flatnonzero((placed(bodies[1])[:, :, 2] == 0.0).all(axis=1))
+    assert other == 0
+    assert sorted(faces) == sorted(bottom)
+    assert (signs == -1).all()
+    assert (codes_of(found[1], bodies[1])[faces] == PROBE).all()
+    assert_true(bodies, found)
+
+
+def test_identical_spheres_coincide_everywhere():
+    sphere = icosphere()
+    copy = Solid(sphere.vertices.copy(), sphere.triangles.copy())
+    turned = Solid(sphere.vertices, np.roll(sphere.triangles[::-1], 1, axis=1))
+    for other in (sphere, copy, turned):
+        found = analyse([Body(sphere, at(1, 2, 3), 1, 1), Body(other, at(1, 2, 3), 2, 2)])
+        for index, contact in enumerate(found):
+            ((partner, faces, signs),) = contact.coincident
+            assert (contact.code, partner) == (PROBE, 1 - index)
+            assert sorted(faces) == list(range(len(sphere.triangles)))
+            assert (signs == 1).all()
+
+
+def test_surfaces_that_share_a_part_of_a_side_are_left_to_rays_there():
+    bodies = [
+        Body(grid_box((0, 0, 0), (1, 1, 1), 3), at(), 1, 1),
+        Body(grid_box((0, 0.2, 0.3), (2, 0.9, 0.8), 3), at(), 2, 2),
+        Body(grid_box((1, 0, 0), (2, 1, 1), 4), at(0, 0.31, 0.17), 3, 3),
+    ]
+    found = analyse(bodies)
+    assert all(contact.coincident for contact in found)
+    assert_true(bodies, found)
+
+
+@pytest.mark.parametrize("broken", ["open", "inverted", "uncertain", "not a number"])
+def test_one_body_in_doubt_leaves_all_to_rays(broken):
+    sphere = icosphere()
+    odd = sphere
+    if broken == "open":
+        odd = Solid(sphere.vertices, sphere.triangles[1:])
+    if broken == "inverted":
+        odd = inverted(sphere)
+    if broken == "not a number":
+        odd = Solid(np.where(np.arange(len(sphere.vertices))[:, None] == 3, np.nan, sphere.vertices), sphere.triangles)
+    bodies = [Body(sphere, at(), 1, 1), Body(odd, at(9.0), 2, 2, certain=broken != "uncertain")]
+    assert odd.closed == (broken == "uncertain")
+    assert [(c.code, c.level, c.partners) for c in analyse(bodies)] == [(PROBE, None, ())] * 2
+
+
+def test_bodies_of_equal_priority_fuse():
+    sphere = icosphere(2)
+    bodies = [Body(sphere, at(), 2, 0), Body(sphere, at(1.1), 2, 0)]
+    found = analyse(bodies)
+    assert all(set(c.faces.tolist()) == {PROBE, AIR, NEVER} for c in found)
+    assert_true(bodies, found)
+
+
+def test_equally_strong_surroundings_of_different_media_are_left_to_rays():
+    sphere = icosphere()
+    around = [Body(sphere, at(0.1 * i, scale=3.0), 5, medium) for i, medium in enumerate("ab")]
+    inner = Body(sphere, at(), 1, "c")
+    assert analyse([*around, inner])[2].code == PROBE
+    same = [Body(sphere, at(0.1 * i, scale=3.0), 5, "a") for i in range(2)]
+    contact = analyse([*same, inner])[2]
+    assert (contact.code, contact.holders) == (MEDIUM, 2)
+    assert contact.around in (0, 1)
+
+
+def test_of_two_surroundings_that_with_the_larger_area_is_known():
+    droplets = joined(icosphere(1, 0.2), icosphere(2, 0.4, (3.0, 0, 0)))
+    bodies = [
+        Body(icosphere(), at(), 2, "small"),
+        Body(icosphere(), at(3.0), 3, "large"),
+        Body(droplets, at(), 1, "droplets"),
+    ]
+    contact = analyse(bodies)[2]
+    assert (contact.code, contact.around) == (FACES, 1)
+    assert contact.faces.tolist() == [PROBE] * 80 + [MEDIUM] * 320
+
+
+def test_a_stronger_holder_decides_where_weaker_surfaces_cross():
+    sphere = icosphere()
+    bodies = [Body(sphere, at(scale=3.0), 1, 1), Body(sphere, at(), 2, 2), Body(sphere, at(1.0), 3, 3)]
+    assert [c.code for c in analyse(bodies)] == [AIR, NEVER, NEVER]
+
+
+def test_islands_of_a_mesh_lie_in_different_media():
+    droplets = joined(*(icosphere(1, 0.3, (x, 0, 0)) for x in range(5)))
+    bodies = [Body(droplets, at(), 2, 2), Body(icosphere(2), at(2.0, scale=0.6), 1, 1)]
+    assert not droplets.overlaps_itself
+    found = analyse(bodies)
+    assert found[0].code == FACES
+    assert found[0].faces.reshape(5, -1)[:, 0].tolist() == [AIR, AIR, NEVER, AIR, AIR]
+    assert_true(bodies, found)
+
+
+def test_a_cavity_is_outside_of_its_body():
+    hollow = joined(icosphere(2), inverted(icosphere(2, 0.6)))
+    assert hollow.closed and not hollow.overlaps_itself
+    bodies = [Body(hollow, at(), 1, 1), Body(icosphere(), at(scale=0.3), 2, 2)]
+    assert [c.code for c in analyse(bodies)] == [AIR, AIR]
+    filled = [Body(hollow, at(), 1, 1), Body(icosphere(), at(scale=0.8), 2, 2)]
+    found = analyse(filled)
+    assert set(found[0].faces.tolist()) == {AIR, MEDIUM}
+    assert found[1].code == NEVER
+    assert_true(filled, found)
+
+
+def torus(steps: int = 24, minor: float = 0.3, wobble: float = 0.0) -> Solid:
+    u, v = (t.ravel() for t in np.meshgrid(np.arange(steps), np.arange(steps), indexing="ij"))
+    s, t = 2 * np.pi * u / steps, 2 * np.pi * v / steps
+    points = np.stack(
+        [(1 + minor * np.cos(t)) * np.cos(s), (1 + minor * np.cos(t)) * np.sin(s), minor * np.sin(t)], axis=1
+    )
+    points += wobble * np.random.default_rng(0).normal(size=points.shape)
+    a, b = u * steps + v, (u + 1) % steps * steps + v
+    c, d = (u + 1) % steps * steps + (v + 1) % steps, u * steps + (v + 1) % steps
+    return Solid(points, np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)]).astype(np.int32))
+
+
+@pytest.mark.parametrize(
+    ("solid", "answer"),
+    [
+        (icosphere(3), False),
+        (torus(), False),
+        (torus(minor=1.4, wobble=0.02), True),
+        (joined(icosphere(2), icosphere(2, 1.0, (1.0, 0.1, 0.2))), True),
+        (joined(icosphere(2), icosphere(2, 0.5)), True),
+        (joined(icosphere(2), inverted(icosphere(2, 0.5)), icosphere(1, 0.2)), False),
+        (joined(icosphere(2), inverted(icosphere(2, 0.5)), inverted(icosphere(1, 0.2))), True),
+        (joined(icosphere(2), inverted(icosphere(2, 0.5, (3.0, 0, 0)))), True),
+        (joined(icosphere(2), icosphere(2)), True),
+        (grid_box((-1, -1, -1), (1, 1, 1), 6), False),
+    ],
+)
+def test_a_mesh_overlaps_itself_where_it_is_wound_twice(solid, answer):
+    assert solid.closed
+    assert solid.overlaps_itself is answer
+
+
+def test_a_body_that_overlaps_itself_is_left_to_rays():
+    double = joined(icosphere(2), icosphere(2, 1.0, (1.0, 0.1, 0.2)))
+    found = analyse([Body(double, at(), 1, 1), Body(icosphere(), at(-0.5, scale=0.2), 2, 2)])
+    assert (found[0].code, found[0].robust) == (PROBE, True)
+    assert (found[1].code, found[1].robust) == (NEVER, False)
+
+
+def test_a_body_scaled_to_nothing_concerns_nobody():
+    sphere = icosphere()
+    found = analyse([Body(sphere, at(scale=0.0), 1, 1), Body(sphere, at(scale=2.0), 2, 2)])
+    assert found[0].robust
+    assert found[1].code == AIR
+
+
+def test_one_priority_decides_only_if_its_bodies_are_apart():
+    sphere = icosphere()
+    cube, one, two = (
+        Body(sphere, at(), 2, 2),
+        Body(sphere, at(1.2, scale=0.5), 1, 1),
+        Body(sphere, at(-1.2, scale=0.5), 1, 1),
+    )
+    assert analyse([cube, one, two])[0].level == 1
+    assert [c.level for c in analyse([cube, one, two])] == [1, 2, 2]
+    touching = Body(sphere, at(1.8, scale=0.5), 1, 1)
+    assert analyse([cube, one, two, touching])[0].level is None
+    apart = [Body(sphere, at(9.0 + x), 1, 1) for x in (0.0, 0.5)]
+    assert analyse([cube, one, two, *apart])[0].level is None
+    assert analyse([cube, one, two, *apart])[1].level == 2
+    other = Body(sphere, at(0, 1.2, scale=0.5), 3, 3)
+    assert analyse([cube, one, other])[0].level is None
+    assert analyse([cube, Body(sphere, at(1.2), 2, 2)])[0].level == 2
+    double = Body(joined(icosphere(1), icosphere(1, 1.0, (0.5, 0, 0))), at(9.0), 1, 1)
+    assert analyse([cube, one, double])[0].level is None
+
+
+def random_scene(rng: np.random.Generator) -> list[Body]:
+    shapes = [icosphere(2), icosphere(1), grid_box((-1, -1, -1), (1, 1, 1), 3)]
+    priorities = rng.integers(1, 4, 12)
+    return [Body(shapes[rng.integers(3)], random_matrix(rng, 2.0), int(p), int(p)) for p in priorities]
+
+
+def same(one, other) -> bool:
+    if (one.code, one.around, one.level, one.partners, one.robust, one.holders) != (
+        other.code,
+        other.around,
+        other.level,
+        other.partners,
+        other.robust,
+        other.holders,
+    ):
+        return False
+    return np.array_equal(one.faces, other.faces) and repr(one.coincident) == repr(other.coincident)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_memory_changes_no_answer(seed):
+    rng = np.random.default_rng(seed)
+    bodies, memory = random_scene(rng), Memory()
+    for _ in range(8):
+        kept, fresh = analyse(bodies, memory), analyse(bodies)
+        assert all(same(a, b) for a, b in zip(kept, fresh, strict=True))
+        move = int(rng.integers(len(bodies)))
+        body = bodies[move]
+        if rng.random() < 0.3:
+            bodies[move] = Body(body.solid, body.matrix, int(rng.integers(1, 4)), 0)
+        elif rng.random() < 0.2:
+            del bodies[move]
+        else:
+            bodies[move] = Body(body.solid, random_matrix(rng, 2.0), body.priority, body.medium)
+
+
+def test_only_the_pairs_of_what_moved_are_looked_at_again():
+    sphere = icosphere()
+    bodies = [Body(sphere, at(1.5 * i), 1 + i % 3, i) for i in range(10)]
+    memory = Memory()
+    analyse(bodies, memory)
+    assert memory.looked_at == 9
+    analyse(bodies, memory)
+    assert memory.looked_at == 0
+    bodies[4] = Body(sphere, at(6.0, 0.1), 2, 4)
+    analyse(bodies, memory)
+    assert memory.looked_at == 2
+    bodies[4] = Body(sphere, at(0.0, 100.0), 2, 4)
+    analyse(bodies, memory)
+    assert memory.looked_at == 0
+
+
+def test_far_from_the_origin_the_answer_is_the_same():
+    sphere = icosphere(3)
+    bodies = [Body(sphere, at(), 1, 1), Body(sphere, at(1.0, 0.1, 0.2), 2, 2)]
+    moved = [Body(b.solid, at(300.0, -200.0, 100.0) @ b.matrix, b.priority, b.medium) for b in bodies]
+    assert all(same(a, b) for a, b in zip(analyse(bodies), analyse(moved)))
+
+
+def test_boxes_are_paired_as_by_comparing_all():
+    rng = np.random.default_rng(1)
+    low = rng.random((3, 300))
+    high = low + 0.2 * rng.random((3, 300))
+    first, second = contacts._overlapping_boxes(low, high, 0.0)
+    meet = np.all((low[:, :, None] <= high[:, None]) & (low[:, None] <= high[:, :, None]), axis=0)
+    expected = {(i, j) for i, j in zip(*np.nonzero(meet)) if i < j}
+    assert {(min(i, j), max(i, j)) for i, j in zip(first.tolist(), second.tolist())} == expected
+    assert len(first) == len(expected)
+
+
+def test_winding_numbers_by_crossings_are_those_by_solid_angles():
+    rng = np.random.default_rng(2)
+    solid = joined(torus(), icosphere(2, 0.5, (1.0, 0.2, 0.1)), inverted(icosphere(1, 0.2, (1.0, 0.1, 0.1))))
+    place = contacts._Placed(solid, np.eye(4))
+    points = rng.uniform(-1.5, 1.5, (400, 3))
+    assert np.array_equal(contacts._windings(points, place), winding(points, placed(Body(solid, at(), 1, 1))))
+    assert np.array_equal(contacts._windings(points[:5], place), winding(points[:5], solid.vertices[solid.triangles]))
+
+
+def test_winding_numbers_are_exact_above_vertices_and_edges():
+    box = grid_box((-1, -1, -1), (1, 1, 1), 4)
+    place = contacts._Placed(box, np.eye(4))
+    steps = np.linspace(-1.0, 1.0, 9)
+    points = np.array([(x, y, 0.1) for x in steps[1:-1] for y in steps[1:-1]])
+    assert (contacts._windings(points, place) == 1).all()
+    assert (contacts._windings(points + (2.0, 0.0, 0.0), place)[points[:, 0] > 0.0] == 0).all()
+
+
+def test_closed_meshes_are_told_from_open_ones():
+    sphere = icosphere(2)
+    assert meshes.is_closed(sphere.triangles)
+    for face in range(0, len(sphere.triangles), 7):
+        assert not meshes.is_closed(np.delete(sphere.triangles, face, axis=0))
+        turned = sphere.triangles.copy()
+        turned[face] = turned[face, ::-1]
+        assert not meshes.is_closed(turned)
+
+
+def test_connected_components_are_those_of_a_search():
+    rng = np.random.default_rng(3)
+    a, b = rng.integers(0, 200, (2, 150))
+    root = meshes.connected(200, a, b)
+    expected = np.arange(200)
+    for _ in range(200):
+        for i, j in zip(a, b):
+            expected[i] = expected[j] = min(expected[i], expected[j])
+    assert np.array_equal(root == root[:, None], expected == expected[:, None])
