@@ -10,6 +10,7 @@
     print(nd.prepare(bpy.context.scene))
 """
 
+from .analysis import analyse, clear_analysis
 from .caustics import set_shadow_caustics
 from .compatibility import UnsupportedError
 from .lights import light_carriers
@@ -26,7 +27,9 @@ __all__ = [
     "Preparation",
     "UnsupportedError",
     "add_passes",
+    "analyse",
     "assign",
+    "clear_analysis",
     "get_priority",
     "light_carriers",
     "new_material",

@@ -13,6 +13,7 @@ import bpy
 import numpy as np
 
 from .compatibility import UnsupportedError
+from .contacts import FACES, PROBE
 from .dispersion import mean_cauchy_distances
 from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS, Parameter
 from .shader_source import inlined_source
@@ -39,6 +40,22 @@ LAMPS_OUTPUT = "Lamps"
 many lamps there are.
 """
 
+ANALYSIS_PANEL = "Scene Analysis"
+OUTSIDE_SOCKET = "Outside"
+LEVEL_SOCKET = "Outside Priority"
+OVERLAP_SOCKET = "Overlaps Itself"
+FOREIGN_SOCKET = "Foreign Objects"
+SURROUNDINGS_SOCKET = "Surroundings"
+SURROUNDINGS_COLOR_SOCKET = "Surroundings Transmittance"
+BY_OBJECT = 5
+"""As in osl/outside.h, beside the codes of :mod:`contacts`: each object has its own."""
+
+FACE_ATTRIBUTE = "nd_outside"
+OFFSET_GROUP = "Nested Dielectric Offset"
+NEIGHBOUR_VALUES = ("IOR", "Transmittance", "Transmittance Depth")
+OBJECT_PROPERTIES = ("nd_outside", "nd_surroundings", "nd_surroundings_transmittance")
+"""Where faces and objects keep what a scene's analysis tells of them, four floats to an object's property."""
+
 TABLE_SOCKET = "Spectral Table"
 MEANS_SOCKET = "Spectral Table Means"
 TABLES_NODE = "Spectral Tables"
@@ -59,6 +76,22 @@ _SOCKET_TYPES = {
 }
 
 
+_ANALYSIS_SOCKETS = {
+    OUTSIDE_SOCKET: (
+        "INT",
+        PROBE,
+        "What lies outside: 0 the scene is asked, 1 air, 2 the surroundings below, 3 a winner, "
+        "4 each face tells, 5 each object tells",
+    ),
+    LEVEL_SOCKET: ("FLOAT", -1.0, "The only priority around, whose nearest surface decides; below 0 there may be more"),
+    OVERLAP_SOCKET: ("BOOL", False, "Objects that overlap themselves are one body"),
+    FOREIGN_SOCKET: ("BOOL", True, "Objects that are no media may stand in the media"),
+    SURROUNDINGS_SOCKET: ("VECTOR", (0.0, 1.0, 0.0), "Priority, IOR and Transmittance Depth of the medium outside"),
+    SURROUNDINGS_COLOR_SOCKET: ("COLOR", (1.0, 1.0, 1.0, 1.0), "Transmittance of the medium outside"),
+}
+_ANALYSIS_INPUTS = ("Around", "AroundLevel", "OverlapsItself", "ForeignNear", "AroundMedium", "AroundTransmittance")
+
+
 def ensure_group() -> bpy.types.NodeTree:
     """Return this file's group, made on first use.
 
@@ -67,7 +100,7 @@ def ensure_group() -> bpy.types.NodeTree:
     has been made then.
     """
     sources = {name: inlined_source(name) for name in (SHADER_FILE, COORDINATE_FILE, LIGHT_FILE)}
-    version = hashlib.sha256(f"{sources}{SOCKETS}".encode()).hexdigest()
+    version = hashlib.sha256(f"{sources}{SOCKETS}{_ANALYSIS_SOCKETS}".encode()).hexdigest()
     for tree in bpy.data.node_groups:
         if tree.get(SOURCE_HASH) == version and tree.library is None:
             return tree
@@ -101,6 +134,11 @@ class Script:
 def make_script(name: str, source: str) -> Script:
     """Compile a shader; raises as :func:`compiled` does."""
     return Script(name, source, compiled(source))
+
+
+def has_analysis(node: bpy.types.ShaderNodeGroup) -> bool:
+    """Whether a material's group node can be told what surrounds it; those of older versions cannot."""
+    return all(name in node.inputs for name in _ANALYSIS_SOCKETS)
 
 
 def find_lights() -> bpy.types.NodeTree | None:
@@ -167,6 +205,7 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
             description=parameter.description,
         )
         _set_limits(socket, parameter)
+    _add_analysis_sockets(interface)
     table = interface.new_socket(
         TABLE_SOCKET,
         in_out="INPUT",
@@ -183,6 +222,21 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
         description="Where red, green and blue of that table have their mean index of refraction; set with it",
     )
     table.hide_value = means.hide_value = True
+
+
+def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:
+    """What the analysis of the scene tells of all objects of a material; defaults tell nothing, and hold everywhere."""
+    panel = interface.new_panel(
+        ANALYSIS_PANEL,
+        default_closed=True,
+        description="Which media the objects of this material touch; kept by the extension, spares rays",
+    )
+    for name, (kind, default, description) in _ANALYSIS_SOCKETS.items():
+        socket = interface.new_socket(
+            name, in_out="INPUT", socket_type=_SOCKET_TYPES[kind], parent=panel, description=description
+        )
+        socket.default_value = default
+        socket.hide_value = True
 
 
 def _set_limits(socket: bpy.types.NodeTreeInterfaceSocket, parameter: Parameter) -> None:
@@ -216,6 +270,10 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         parameter.osl_name: "INT" if parameter.kind in ("MENU", "BOOL") else parameter.kind for parameter in SOCKETS
     }
     kinds |= {
+        osl_name: "INT" if kind == "BOOL" else kind
+        for osl_name, (kind, *_) in zip(_ANALYSIS_INPUTS, _ANALYSIS_SOCKETS.values())
+    }
+    kinds |= {
         "Requests": "COLOR",
         "CountsPortals": "SHADER",
         "Emitter": "SHADER",
@@ -236,6 +294,8 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         if parameter.kind == "MENU":
             source = _menu(tree, source, parameter)
         links.new(source, script.inputs[parameter.osl_name])
+    for osl_name, name in zip(_ANALYSIS_INPUTS, _ANALYSIS_SOCKETS):
+        links.new(inputs.outputs[name], script.inputs[osl_name])
     spectral = _view_layer_attribute(tree, "render.use_motion_blur").outputs["Fac"]
     coefficients, absorbs = _absorption_coefficients(tree, inputs)
     links.new(_requests(tree, inputs, spectral, absorbs), script.inputs["Requests"])
@@ -461,6 +521,8 @@ def _requests(
     # JF's also moves the index of white light.
     curve["Dispersion"] = math("COMPARE", model, 2.0, 0.5)
     curve["Sellmeier C"] = curve["Sellmeier B"]
+    outside = inputs.outputs[OUTSIDE_SOCKET]
+    by_object = math("COMPARE", outside, float(BY_OBJECT), 0.5)
     conditions = curve | {
         "Transmittance": absorbs,
         "Transmittance Depth": absorbs,
@@ -469,6 +531,8 @@ def _requests(
     }
     names = [
         (PRIORITY_PROPERTY, "OBJECT", None),
+        (FACE_ATTRIBUTE, "GEOMETRY", math("GREATER_THAN", outside, FACES - 0.5)),
+        *((name, "OBJECT", by_object) for name in OBJECT_PROPERTIES),
         ("material_slots[1].material.pass_index", "OBJECT", None),
         ("material_index", "GEOMETRY", None),
     ]

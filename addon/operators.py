@@ -6,6 +6,7 @@ from math import isnan
 import bpy
 
 from . import lights, media
+from .analysis import clear_analysis, is_analysed
 from .caustics import set_shadow_caustics
 from .choice import Choice
 from .compatibility import UnsupportedError, blender_problem
@@ -371,6 +372,8 @@ class Prepare(bpy.types.Operator):
             return {"CANCELLED"}
         for change in preparation.changes or ("Nothing to change",):
             self.report({"INFO"}, change)
+        for line in str(preparation.found).splitlines():
+            self.report({"INFO"}, line)
         for problem in preparation.problems:
             self.report({"WARNING"}, str(problem))
         return {"FINISHED"}
@@ -472,6 +475,25 @@ class AddPasses(_SceneOperator):
         return add_passes(scene)
 
 
+class ClearAnalysis(bpy.types.Operator):
+    """Let all media ask the scene what surrounds them while it renders, until it is prepared again"""
+
+    bl_idname = "nested_dielectric.clear_analysis"
+    bl_label = "Clear Analysis"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not is_analysed(context.scene):
+            cls.poll_message_set("The scene has no analysis; Prepare Scene makes one")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        clear_analysis(context.scene)
+        return {"FINISHED"}
+
+
 def draw_preset_menu(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     """The presets as a submenu of a menu of Blender's."""
     self.layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Nested Dielectric")
@@ -488,4 +510,5 @@ CLASSES = (
     LampCarrier,
     ShadowCaustics,
     AddPasses,
+    ClearAnalysis,
 )

@@ -8,6 +8,7 @@ import bpy
 import bpy.utils.previews
 import numpy as np
 
+from .analysis import last_found
 from .compatibility import achromatic_reason, blender_problem, settings_problem
 from .dispersion import LINE_C, LINE_D, LINE_F, abbe_number, material_ior
 from .lights import LOBE, NOTHING, RAYS, light_carriers
@@ -18,6 +19,7 @@ from .operators import (
     SELLMEIER_REMEDY,
     AddPasses,
     AssignPreset,
+    ClearAnalysis,
     DispersionModel,
     LampCarrier,
     Prepare,
@@ -187,6 +189,19 @@ def draw_active(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         column.prop(dielectric_node(material).inputs["Priority"], "default_value", text="Priority of Material")
         draw_priority(column.row(align=True), obj, text="Priority")
     layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Assign Preset", icon="MATERIAL")
+
+
+def draw_analysis(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Which media spare rays, which do not, and why."""
+    found = last_found(context.scene)
+    if found is None:
+        draw_text(
+            layout, context, "All media ask the scene what surrounds them; Prepare Scene looks at it beforehand", "INFO"
+        )
+    else:
+        for line in str(found).splitlines():
+            draw_text(layout, context, line, "INFO")
+    layout.operator(ClearAnalysis.bl_idname, icon="X")
 
 
 def draw_dispersion(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -444,6 +459,18 @@ class SidebarLampsPanel(_Sidebar, bpy.types.Panel):
         draw_lamps(self.layout, context)
 
 
+class SidebarAnalysisPanel(_Sidebar, bpy.types.Panel):
+    """What the media know of each other, in the sidebar of the 3D view."""
+
+    bl_idname = "NESTED_DIELECTRIC_PT_sidebar_analysis"
+    bl_parent_id = SidebarPanel.bl_idname
+    bl_label = "Scene Analysis"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        draw_analysis(self.layout, context)
+
+
 CLASSES = (
     MediaList,
     ObjectPanel,
@@ -453,4 +480,5 @@ CLASSES = (
     SidebarDispersionPanel,
     SidebarSpectrumPanel,
     SidebarLampsPanel,
+    SidebarAnalysisPanel,
 )

@@ -8,12 +8,14 @@ from typing import Any
 
 import bpy
 
+from .analysis import Found, analyse
 from .checks import Problem, find_problems
 from .compatibility import achromatic_reason, require_blender
 from .lights import update_lights
 from .materials import refresh_spectrum
 from .media import dispersing_materials, media
 from .parameters import ParameterError
+from .parting import part_coincident
 
 AT_LEAST = {
     "max_bounces": 64,
@@ -29,13 +31,17 @@ and 0.08 % at 256.
 
 @dataclass(frozen=True)
 class Preparation:
-    """What :func:`prepare` changed, in sentences, and the problems it found and left."""
+    """What :func:`prepare` changed, in sentences, the problems it found and left, and what the media of the scene now know
+    of each other.
+    """
 
     changes: tuple[str, ...]
     problems: tuple[Problem, ...]
+    found: Found = Found()
 
     def __str__(self) -> str:
         lines = [f"changed: {change}" for change in self.changes] or ["nothing to change"]
+        lines += [f"analysis: {line}" for line in str(self.found).splitlines()]
         return "\n".join(lines + [f"warning: {problem}" for problem in self.problems])
 
 
@@ -44,7 +50,7 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
 
     Cycles on the CPU with Open Shading Language, and enough bounces; where a medium disperses, the motion blur that
     carries the wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space; the
-    lamps that direct refraction and reflection carry.
+    lamps that direct refraction and reflection carry; and what surrounds each medium, so that it need not ask the scene.
     Larger limits stay. A second call changes nothing. Raises
     :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
     """
@@ -69,7 +75,15 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
                 changes.append(f"Spectral Table of {material.name}: baked again")
         except ParameterError as error:
             problems.append(Problem(material.name, f"keeps its old spectral table, because {error}", "choose another"))
-    return Preparation(tuple(changes), tuple(problems + find_problems(scene)))
+    found = Found()
+    if media(scene):
+        found = analyse(scene)
+        parted, coincident = part_coincident(scene)
+        changes += parted
+        problems += coincident
+        if parted:
+            found = analyse(scene)
+    return Preparation(tuple(changes), tuple(problems + find_problems(scene)), found)
 
 
 def _ensure(changes: list[str], owner: Any, attribute: str, value: Any, label: str) -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import sys
+import threading
 from contextlib import ExitStack
 
 import bpy
 
-from . import operators, panels
+from . import analysis, operators, panels
 from .compatibility import blender_problem, settings_problem
 from .media import media
 
@@ -39,8 +40,16 @@ def register() -> None:
         bpy.types.VIEW3D_MT_object.append(operators.draw_preset_menu)
         undo.callback(bpy.types.VIEW3D_MT_object.remove, operators.draw_preset_menu)
 
-        bpy.app.handlers.render_init.append(warn_before_render)
-        undo.callback(bpy.app.handlers.render_init.remove, warn_before_render)
+        for handlers, handler in (
+            (bpy.app.handlers.render_init, warn_before_render),
+            (bpy.app.handlers.render_init, analyse_before_render),
+            (bpy.app.handlers.depsgraph_update_post, analyse_after_update),
+            (bpy.app.handlers.load_post, analyse_after_load),
+            (bpy.app.handlers.undo_post, forget_shapes),
+            (bpy.app.handlers.redo_post, forget_shapes),
+        ):
+            handlers.append(handler)
+            undo.callback(handlers.remove, handler)
 
         command = bpy.utils.register_cli_command("nested_dielectric", run_command)
         undo.callback(bpy.utils.unregister_cli_command, command)
@@ -65,6 +74,37 @@ def warn_before_render(scene: bpy.types.Scene, *_: object) -> None:
     problem = blender_problem() or settings_problem(scene)
     if problem and media(scene):
         print(f"Nested Dielectric: {problem}", file=sys.stderr)
+
+
+@bpy.app.handlers.persistent
+def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
+    """Make sure that the media know what surrounds them now. Where the render has a thread of its own there is a window,
+    and updates have been followed.
+    """
+    if analysis.is_analysed(scene) and threading.current_thread() is threading.main_thread():
+        analysis.analyse(scene)
+
+
+@bpy.app.handlers.persistent
+def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Follow what moves, changes, comes and goes."""
+    if analysis.is_analysed(scene):
+        analysis.follow(scene, depsgraph)
+
+
+@bpy.app.handlers.persistent
+def analyse_after_load(*_: object) -> None:
+    """Look at a file anew: it may have been changed without the extension."""
+    analysis.forget_shapes()
+    for scene in bpy.data.scenes:
+        if analysis.is_analysed(scene):
+            analysis.analyse(scene)
+
+
+@bpy.app.handlers.persistent
+def forget_shapes(*_: object) -> None:
+    """Undoing changes meshes without an update that names them."""
+    analysis.forget_shapes()
 
 
 def run_command(arguments: list[str]) -> int:

@@ -9,38 +9,75 @@ struct Interface {
   Medium to;    /* on the other side */
   int from_holders; /* objects of that medium's priority around the point */
   int to_holders;
-  int traced;   /* 0 where Cycles cannot trace rays from shaders, so nothing of this is known */
+  int traced;   /* 0 where Cycles cannot trace rays from shaders, or a spot check finds the analysis wrong */
 };
 
-/* Schmidt and Budge, 2002 (Simple nested dielectrics in ray traced images), without their per-ray interface list: the
- * media around the point are asked of the scene.
+/* Schmidt and Budge, 2002 (Simple nested dielectrics in ray traced images), without their per-ray interface list: what
+ * is around the point is known from an analysis of the scene, or the scene is asked.
  *
  * Both sides of a surface share the other media, seen from outside it. Entering, those are the media just before it,
- * leaving, those just behind it, so of two coincident faces one is valid and one is not whichever is met first. */
-Interface resolve_interface(Medium own, int spectral, float wavelength)
+ * leaving, those just behind it, so of two coincident faces one is valid and one is not whichever is met first.
+ *
+ * `always_air`: the analysis tells so of all objects of the material, which leaves out most of this; looks_ahead: the
+ * extent of the media matters. */
+Interface resolve_interface(Medium own, Outside told, int always_air, int looks_ahead, int spectral, float wavelength)
 {
-  /* The way through a medium that absorbs ends where another wins, so its priority counts even alone. */
-  int known = absorbs(own);
-  float priority = known ? shaded_priority(own.priority) : own.priority;
-  int curves = CURVES_NONE;
-  if (spectral)
-    curves = (own.disperses || wavelength > 0.0) ? CURVES_ALL : CURVES_DISPERSING;
-  Surroundings outer = probe_surroundings(P, backfacing() ? -Ng : Ng, priority, known, curves, wavelength);
+  vector away = backfacing() ? -Ng : Ng;
   Medium inner = own;
-  inner.priority = outer.own_priority;
+  Medium outer = air();
+  int outer_holders = 0;
   Interface s;
-  s.traced = outer.traced;
-  s.valid = inner.priority < outer.medium.priority;
-  if (backfacing()) {
-    s.from = inner;
-    s.to = outer.medium;
-    s.from_holders = 1;
-    s.to_holders = outer.holders;
+  s.valid = 1;
+  s.traced = 1;
+  /* The way through a medium that absorbs ends where another wins, so its priority counts even alone. */
+  int known = looks_ahead && absorbs(own);
+  if (known)
+    inner.priority = shaded_priority(own.priority);
+  if (always_air) {
+    if (spot_check() && lies_in_a_medium(P, away, s.traced) && lies_in_a_medium(P, askew(away), s.traced))
+      s.traced = 0;
   }
   else {
-    s.from = outer.medium;
+    int outside = told_outside(told);
+    /* Light of one wavelength needs the medium's whole curve, and a look ahead all that holds the point. */
+    if (outside == OUTSIDE_MEDIUM && (spectral || (looks_ahead && absorbs(told.medium))))
+      outside = OUTSIDE_UNKNOWN;
+    if (outside == OUTSIDE_MEDIUM)
+      outer = told.medium;
+    if (outside == OUTSIDE_WINNER)
+      s.valid = 0;
+    int curves = CURVES_NONE;
+    if (spectral)
+      curves = (own.disperses || wavelength > 0.0) ? CURVES_ALL : CURVES_DISPERSING;
+    /* What a single priority decides is checked, too. */
+    int unknown = outside == OUTSIDE_UNKNOWN;
+    int checks = ((!unknown || told.level >= 0.0) && spot_check()) ? 2 : 0;
+    for (int i = unknown ? 0 : 1; i <= checks; i++) {
+      Surroundings found = probe_surroundings(P, (i < 2) ? away : askew(away), inner.priority, known, i ? -1.0 : told.level,
+                                              told.overlaps_itself, curves, wavelength);
+      s.traced = found.traced;
+      if (i == 0) {
+        inner.priority = found.own_priority;
+        outer = found.medium;
+        outer_holders = found.holders;
+        s.valid = inner.priority < outer.priority;
+      }
+      else if (agrees(s.valid, outer, found))
+        checks = 0;
+      else
+        s.traced = found.traced && i == 1; /* twice is no rounding */
+    }
+  }
+  if (backfacing()) {
+    s.from = inner;
+    s.to = outer;
+    s.from_holders = 1;
+    s.to_holders = outer_holders;
+  }
+  else {
+    s.from = outer;
     s.to = inner;
-    s.from_holders = outer.holders;
+    s.from_holders = outer_holders;
     s.to_holders = 1;
   }
   return s;

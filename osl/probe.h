@@ -1,7 +1,7 @@
 /* What a point lies in, asked of the scene by trace(). */
 #pragma once
 
-#include "medium.h"
+#include "outside.h"
 
 /* Crossings one probe may count. A ray through a whole forest meets fewer. */
 #define PROBE_HITS 1024
@@ -52,11 +52,13 @@ struct Surroundings {
  * decides that the surface's own medium does not win.
  *
  * own_priority is the material's until an object's own is asked for, which a surface that meets no other medium never
- * needs; own_is_known tells that it has been. */
-Surroundings probe_surroundings(
-    point origin, vector direction, float own_priority, int own_is_known, int curves, float wavelength)
+ * needs; own_is_known tells that it has been. Where `level` is a priority, objects of that priority alone may be around,
+ * all closed and apart from each other: the nearest surface of theirs decides. Surfaces of an object that overlaps itself
+ * count as any other's. */
+Surroundings probe_surroundings(point origin, vector direction, float own_priority, int own_is_known, float level,
+                                int overlaps_itself, int curves, float wavelength)
 {
-  float level[PROBE_LEVELS];
+  float open[PROBE_LEVELS];
   int sum[PROBE_LEVELS];
   int levels = 0;
   int known = own_is_known;
@@ -78,23 +80,23 @@ Surroundings probe_surroundings(
     getmessage("trace", "hitdist", distance);
     t = step_past(distance);
     getmessage("trace", "hitself", self);
-    if (self > 0.0)
+    if (self > 0.0 && !overlaps_itself)
       continue;
     int slot = -1;
     float priority = hit_priority(slot);
-    if (priority >= AIR_PRIORITY || priority > s.medium.priority)
+    if (priority >= AIR_PRIORITY || priority > s.medium.priority || (level >= 0.0 && priority != level))
       continue;
     if (!known) {
       known = 1;
       s.own_priority = shaded_priority(own_priority);
     }
     int k = 0;
-    while (k < levels && level[k] != priority)
+    while (k < levels && open[k] != priority)
       k++;
     if (k == PROBE_LEVELS)
       continue;
     if (k == levels) {
-      level[k] = priority;
+      open[k] = priority;
       sum[k] = 0;
       levels++;
     }
@@ -106,8 +108,41 @@ Surroundings probe_surroundings(
     }
     if (priority == s.medium.priority)
       s.holders = sum[k];
+    if (level >= 0.0)
+      return s;
   }
   return s;
+}
+
+/* Whether a surface that is taken for valid or not, with that medium outside, is what a ray found. */
+int agrees(int valid, Medium outer, Surroundings found)
+{
+  if (!valid || found.medium.priority <= found.own_priority)
+    return !valid && found.medium.priority <= found.own_priority;
+  return found.medium.priority == outer.priority && abs(found.medium.ior.white - outer.ior.white) < 1e-4 &&
+         length((vector)(found.medium.transmittance - outer.transmittance)) < 1e-3;
+}
+
+/* Whether any medium fills the point just off P, P's own object left out; `traced` as in Surroundings. */
+int lies_in_a_medium(point origin, vector direction, output int traced)
+{
+  int sum = 0;
+  float t = 0.0;
+  for (int i = 0; i < PROBE_HITS; i++) {
+    if (!trace(origin, direction, "mindist", t)) {
+      int hit = 0;
+      traced = i > 0 || getmessage("trace", "hit", hit);
+      break;
+    }
+    float distance = 0.0, self = 0.0;
+    float priority[4];
+    getmessage("trace", "hitdist", distance);
+    t = step_past(distance);
+    getmessage("trace", "hitself", self);
+    if (self == 0.0 && getmessage("trace", OBJECT_PRIORITY, priority))
+      sum += hit_crossing(direction);
+  }
+  return sum > 0;
 }
 
 /* How far a ray from inside a medium runs in it: to the surface where it ends, to a foreign object if those stop it, or
@@ -147,4 +182,14 @@ float medium_extent(
     }
   }
   return reach;
+}
+
+/* Whether a foreign object stands in the surface's own medium straight behind it. */
+int holds_foreign(Medium own)
+{
+  Medium m = own;
+  m.priority = shaded_priority(own.priority);
+  int foreign = 0;
+  medium_extent(P, backfacing() ? Ng : -Ng, m, 1, 1e30, 1, foreign);
+  return foreign;
 }

@@ -274,8 +274,10 @@ def test_every_socket_has_its_limits_and_a_description():
     sockets = {
         item.name: item for item in group.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT"
     }
-    set_with_the_table = {"Spectral Table", "Spectral Table Means"}
-    assert [name for name in sockets if name not in set_with_the_table] == [
+    set_by_the_extension = {"Spectral Table", "Spectral Table Means"} | {
+        name for name, socket in sockets.items() if socket.parent.name == "Scene Analysis"
+    }
+    assert [name for name in sockets if name not in set_by_the_extension] == [
         parameter.name for parameter in parameters.SOCKETS
     ]
     for parameter in parameters.SOCKETS:
@@ -291,6 +293,12 @@ def test_the_shader_takes_exactly_the_tables_parameters():
     body = source[source.index("shader nested_dielectric(") :]
     inputs = [line.split("=")[0].split()[-1] for line in body[: body.index("output")].splitlines()[1:] if "=" in line]
     assert inputs == [parameter.osl_name for parameter in parameters.SOCKETS] + [
+        "Around",
+        "AroundLevel",
+        "OverlapsItself",
+        "ForeignNear",
+        "AroundMedium",
+        "AroundTransmittance",
         "Requests",
         "CountsPortals",
         "Emitter",

@@ -1,0 +1,772 @@
+"""Telling media what surrounds them, so that they need not ask the scene while it is rendered.
+
+:func:`analyse` looks at a scene's media as they are evaluated now and writes what holds whenever the file is rendered: into
+the sockets of a material where it holds for all of its objects, else into their custom properties, and into an attribute of
+a mesh where its faces differ. The shader needs nothing else of the extension. Whatever may be different in a render (things
+that move, modifiers that depend on more than their mesh, what is hidden in the viewport alone) leaves all media asking the
+scene, as they do without an analysis; and the shader checks a share of what it is told (osl/outside.h).
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import bpy
+import numpy as np
+
+from . import contacts
+from .contacts import AIR, FACES, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
+from .materials import dielectric_node, dielectrics
+from .media import media, own_priority
+from .node_group import (
+    BY_OBJECT,
+    FACE_ATTRIBUTE,
+    FOREIGN_SOCKET,
+    LEVEL_SOCKET,
+    NEIGHBOUR_VALUES,
+    OBJECT_PROPERTIES,
+    OFFSET_GROUP,
+    OUTSIDE_SOCKET,
+    OVERLAP_SOCKET,
+    SURROUNDINGS_COLOR_SOCKET,
+    SURROUNDINGS_SOCKET,
+    has_analysis,
+)
+
+ANALYSED = "nd_analysed"
+"""Custom property of a scene whose media are kept analysed."""
+
+SETTLED_MODIFIERS = frozenset(
+    (
+        "ARRAY",
+        "BEVEL",
+        "CAST",
+        "DECIMATE",
+        "DISPLACE",
+        "EDGE_SPLIT",
+        "MIRROR",
+        "REMESH",
+        "SCREW",
+        "SIMPLE_DEFORM",
+        "SMOOTH",
+        "LAPLACIANSMOOTH",
+        "CORRECTIVE_SMOOTH",
+        "SOLIDIFY",
+        "SUBSURF",
+        "TRIANGULATE",
+        "WEIGHTED_NORMAL",
+        "WELD",
+    )
+)
+"""Modifiers whose result depends on the mesh and on numbers alone, the same in the viewport and in a render."""
+
+AIR_AROUND = (0.0, 1.0, 0.0)
+EVERYWHERE = np.array([(-np.inf,) * 3, (np.inf,) * 3])
+VAGUE = 0.5
+"""Margin around what a render may show with another shape, in diagonals of its box: a subdivided surface stays within
+the hull of any coarser one.
+"""
+
+CLEAR = (1.0, 1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class Outside:
+    """What a medium is told of its outside; the defaults tell nothing."""
+
+    code: int = PROBE
+    level: float = -1.0
+    overlaps_itself: bool = False
+    foreign: bool = True
+    medium: tuple[float, float, float] = AIR_AROUND
+    transmittance: tuple[float, float, float, float] = CLEAR
+
+    def merged(self, other: Outside) -> Outside | None:
+        """What holds for both, or None if that is less than each is told."""
+        if self == other:
+            return self
+        if (self.code, self.medium, self.transmittance) != (other.code, other.medium, other.transmittance):
+            return None
+        return replace(
+            self,
+            level=self.level if self.level == other.level else -1.0,
+            overlaps_itself=self.overlaps_itself or other.overlaps_itself,
+            foreign=self.foreign or other.foreign,
+        )
+
+
+@dataclass(frozen=True)
+class Found:
+    """What an analysis found, by name of object, each in the order of the scene's media.
+
+    :param known: media that ask the scene nowhere.
+    :param partly: media that ask the scene only near crossings.
+    :param asking: media that ask the scene everywhere.
+    :param overlapping: media that overlap themselves.
+    :param coincident: pairs of media with faces in the same place.
+    :param doubts: why nothing is told to any medium, by name; empty where it is.
+    """
+
+    known: tuple[str, ...] = ()
+    partly: tuple[str, ...] = ()
+    asking: tuple[str, ...] = ()
+    overlapping: tuple[str, ...] = ()
+    coincident: tuple[tuple[str, str], ...] = ()
+    doubts: tuple[tuple[str, str], ...] = ()
+
+    def __str__(self) -> str:
+        lines = [f"{name!r} {reason}, so all media ask the scene what surrounds them" for name, reason in self.doubts]
+        lines += [
+            f"{what}: {_listed(names)}"
+            for names, what in (
+                (self.known, "know what surrounds them"),
+                (self.partly, "know what surrounds them except near crossings"),
+                (() if self.doubts else self.asking, "ask the scene what surrounds them"),
+                (self.overlapping, "overlap themselves, which takes longer"),
+            )
+            if names
+        ]
+        return "\n".join(lines)
+
+
+def _listed(names: tuple[str, ...], most: int = 4) -> str:
+    shown = ", ".join(map(repr, names[:most]))
+    return shown if len(names) <= most else f"{shown} and {len(names) - most} more"
+
+
+def is_analysed(scene: bpy.types.Scene) -> bool:
+    """Whether the media of a scene are kept analysed."""
+    return bool(scene.get(ANALYSED))
+
+
+def clear_analysis(scene: bpy.types.Scene) -> None:
+    """Make all media of a scene ask it again while it is rendered."""
+    scene.pop(ANALYSED, None)
+    for obj in media(scene):
+        _tell_object(obj, None)
+        _tell_faces(obj, None)
+        for _, material in dielectrics(obj):
+            _tell_material(material, Outside())
+
+
+def analyse(scene: bpy.types.Scene) -> Found:
+    """Look at the media of a scene, and tell each what surrounds it. The scene's media are kept analysed from then on.
+
+    Linked materials and objects are left as they are.
+    """
+    scene[ANALYSED] = True
+    layer = scene.view_layers[0]
+    layer.update()
+    forget_shapes()
+    return _conclude(_survey(scene, layer.depsgraph))
+
+
+def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Analyse again after an update of a scene whose media are kept analysed, as far as the update reaches."""
+    changed = {update.id.original: update for update in depsgraph.updates if isinstance(update.id, _CONCERNED)}
+    if not changed:
+        return
+    for data, update in changed.items():
+        if update.is_updated_geometry or isinstance(data, bpy.types.Mesh):
+            _shapes.pop(data.session_uid, None)
+    survey = _surveys.get(scene.session_uid)
+    alone = survey is not None and all(
+        isinstance(data, bpy.types.Mesh) or (isinstance(data, bpy.types.Object) and data.name in survey.known)
+        for data in changed
+    )
+    if alone:
+        objects = {data for data in changed if isinstance(data, bpy.types.Object)}
+        _conclude(_renewed(survey, objects, depsgraph))
+    else:
+        _conclude(_survey(scene, depsgraph))
+
+
+def forget_shapes() -> None:
+    """Look at all meshes anew the next time: after another file, or another state of this one, has been loaded."""
+    _shapes.clear()
+    _surveys.clear()
+
+
+@dataclass(frozen=True)
+class Coincidence:
+    """Faces of a medium that lie in the same place as others' and are to be moved.
+
+    :param others: names of those, for a sentence.
+    :param rank: number of stronger levels of priority among all that coincide, at least 1.
+    :param size: diagonal of the object's box, scene units.
+    :param reach: its largest coordinate.
+    :param matrix: (4, 4) from the mesh's space to the world's.
+    :param corners: (m, 3) vertices of the triangles.
+    :param normals: (m, 3) in the world, outwards.
+    :param sides: (m,) 1 where they are to be moved along the normals, -1 where against them: a weaker medium's into the
+        stronger one, a stronger one's outwards where only part of a larger face is met.
+    """
+
+    obj: bpy.types.Object
+    others: str
+    rank: int
+    size: float
+    reach: float
+    matrix: np.ndarray
+    corners: np.ndarray
+    normals: np.ndarray
+    sides: np.ndarray
+
+
+def coincidences(scene: bpy.types.Scene) -> list[Coincidence]:
+    """Return what coincides in a scene, as the last analysis in this session found it."""
+    survey = _surveys.get(scene.session_uid)
+    if survey is None:
+        return []
+    rows = survey.bodies
+    among = [{other for other, *_ in contact.coincident} for contact in survey.contacts]
+    moved = {}
+    for index, (row, contact) in enumerate(zip(rows, survey.contacts)):
+        found = []
+        for other, triangles, signs in contact.coincident:
+            if (row.body.priority, index) > (rows[other].body.priority, other):
+                found.append((other, triangles, -signs))
+            elif index not in among[other]:
+                # Part of a larger face of the weaker one's, which cannot be moved alone.
+                found.append((other, triangles, np.ones(len(signs))))
+        if found and row.obj not in moved:
+            moved[row.obj] = (row, found)
+    levels = sorted({rows[other].body.priority for _, found in moved.values() for other, *_ in found})
+    result = []
+    for obj, (row, found) in moved.items():
+        faces = np.concatenate([triangles for _, triangles, _ in found])
+        corners = row.body.solid.triangles[faces]
+        a, b, c = (row.body.solid.vertices[corners[:, i]] @ row.body.matrix[:3, :3].T for i in range(3))
+        normals = np.cross(b - a, c - a) * np.sign(np.linalg.det(row.body.matrix[:3, :3]))
+        result.append(
+            Coincidence(
+                obj,
+                _listed(tuple(rows[other].obj.name for other, *_ in found)),
+                max(sum(level < row.body.priority for level in levels), 1),
+                float(np.linalg.norm(row.box[1] - row.box[0])),
+                float(np.abs(row.box).max()),
+                row.body.matrix,
+                corners,
+                normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30),
+                np.concatenate([sides for *_, sides in found]).astype(float),
+            )
+        )
+    return result
+
+
+def last_found(scene: bpy.types.Scene) -> Found | None:
+    """What the last analysis of a scene found in this session."""
+    return _last.get(scene.session_uid) if is_analysed(scene) else None
+
+
+_CONCERNED = (
+    bpy.types.Object,
+    bpy.types.Mesh,
+    bpy.types.Material,
+    bpy.types.ShaderNodeTree,
+    bpy.types.GeometryNodeTree,
+    bpy.types.Collection,
+)
+
+
+def _conclude(survey: _Survey) -> Found:
+    told = _outsides(survey)
+    _tell(survey, told)
+    _forget_unused(survey)
+    found = _found(survey, told)
+    _surveys[survey.scene.session_uid] = survey
+    _last[survey.scene.session_uid] = found
+    return found
+
+
+# Looking ------------------------------------------------------------------------------------------------------------
+
+
+class _Doubt(Exception):
+    """Why nothing may be told to anyone: an object may be anywhere, or fill space that it does not show."""
+
+
+@dataclass(frozen=True)
+class _Facts:
+    """What matters of a nested dielectric's material.
+
+    :param values: IOR, transmittance and its depth; None if they may change from frame to frame.
+    :param priority: None if it may change.
+    :param displaces: it moves the surface of its objects.
+    """
+
+    values: tuple | None
+    priority: int | None
+    displaces: bool
+    can_be_told: bool
+
+
+@dataclass(frozen=True)
+class _Row:
+    """An instance of an object.
+
+    :param box: (2, 3) lowest and highest corner of where it may be, in the world.
+    :param medium: it is a nested dielectric.
+    :param body: the medium's exact shape and place; None if a render may show it with another in the same box.
+    :param doubt: empty, or why it may be anywhere.
+    """
+
+    obj: bpy.types.Object
+    box: np.ndarray
+    medium: bool = False
+    body: Body | None = None
+    doubt: str = ""
+
+
+@dataclass(frozen=True)
+class _Survey:
+    """Every instance in a scene, and what the bodies among them know.
+
+    :param rows: in the order of the depsgraph.
+    :param facts: of the materials.
+    :param doubts: names and reasons.
+    :param known: objects by name whose rows may be made anew one by one; empty where objects are instanced.
+    """
+
+    scene: bpy.types.Scene
+    rows: list[_Row]
+    facts: dict[bpy.types.Material, _Facts]
+    doubts: tuple[tuple[str, str], ...]
+    known: dict[str, int]
+    contacts: list[Contact]
+
+    @cached_property
+    def elsewhere(self) -> set[bpy.types.Object]:
+        """Objects of other scenes, where what holds in this one need not."""
+        return {obj for scene in bpy.data.scenes if scene != self.scene for obj in scene.objects}
+
+    @cached_property
+    def bodies(self) -> list[_Row]:
+        return [row for row in self.rows if row.body is not None]
+
+    @cached_property
+    def mixed(self) -> set[int]:
+        """Priorities of which bodies overlap that are filled with different media, so that either may be found."""
+        return {
+            row.body.priority
+            for row, contact in zip(self.bodies, self.contacts)
+            for other in (self.bodies[partner].body for partner in contact.partners)
+            if other.priority == row.body.priority and other.medium != row.body.medium
+        }
+
+    @cached_property
+    def vague(self) -> list[_Row]:
+        return [row for row in self.rows if row.medium and row.body is None]
+
+
+_shapes: dict[int, Solid] = {}
+"""Evaluated meshes, by the session's number of the mesh, or of the object where modifiers make it its own."""
+
+_solids: dict[bytes, Solid] = {}
+"""The same by what is in them."""
+
+_memory = Memory()
+_surveys: dict[int, _Survey] = {}
+_last: dict[int, Found] = {}
+
+
+def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
+    facts = {material: _facts(material) for material in bpy.data.materials if dielectric_node(material) is not None}
+    rows: list[_Row] = []
+    plain = True
+    for instance in depsgraph.object_instances:
+        plain = plain and not instance.is_instance
+        if instance.object.type in _SHAPED:
+            rows.append(_row(scene, facts, instance.object, np.array(instance.matrix_world)))
+    known = {row.obj.name: index for index, row in enumerate(rows)} if plain else {}
+    doubts = dict(_scene_doubts(scene, facts))
+    seen = {row.obj for row in rows}
+    doubts.update(
+        (obj.name, "is hidden in the viewport alone") for obj in media(scene) if obj not in seen and not obj.hide_render
+    )
+    return _with_contacts(_Survey(scene, rows, facts, tuple(doubts.items()), known, []))
+
+
+def _renewed(survey: _Survey, objects: set[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> _Survey:
+    """The survey after these objects alone have moved or changed."""
+    rows = list(survey.rows)
+    for obj in objects:
+        evaluated = obj.evaluated_get(depsgraph)
+        rows[survey.known[obj.name]] = _row(survey.scene, survey.facts, evaluated, np.array(evaluated.matrix_world))
+    return _with_contacts(_Survey(survey.scene, rows, survey.facts, survey.doubts, survey.known, []))
+
+
+def _with_contacts(survey: _Survey) -> _Survey:
+    return replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], _memory))
+
+
+_SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"}
+
+
+def _row(
+    scene: bpy.types.Scene,
+    facts: dict[bpy.types.Material, _Facts],
+    evaluated: bpy.types.Object,
+    matrix: np.ndarray,
+) -> _Row:
+    obj = evaluated.original
+    corners = np.array([tuple(corner) for corner in evaluated.bound_box]) @ matrix[:3, :3].T + matrix[:3, 3]
+    box = np.array([corners.min(axis=0), corners.max(axis=0)])
+    dielectric = {
+        slot.material.original for slot in evaluated.material_slots if slot.material and slot.material.original in facts
+    }
+    try:
+        _require_still(obj)
+        if not dielectric:
+            return _Row(obj, box)
+        exact = _is_exact(scene, obj) and dielectric == {slot.material for slot in obj.material_slots} & facts.keys()
+        if len(dielectric) == 1:
+            (material,) = dielectric
+            exact = exact and facts[material].can_be_told
+            body = _body(obj, evaluated, matrix, facts[material], exact)
+            if body is not None:
+                return _Row(obj, box, True, body)
+        margin = np.linalg.norm(box[1] - box[0]) * VAGUE
+        return _Row(obj, box + np.array([[-margin], [margin]]), True)
+    except _Doubt as doubt:
+        return _Row(obj, EVERYWHERE, bool(dielectric), doubt=str(doubt))
+
+
+def _body(
+    obj: bpy.types.Object, evaluated: bpy.types.Object, matrix: np.ndarray, facts: _Facts, exact: bool
+) -> Body | None:
+    """The exact medium, or None. Raises :class:`_Doubt` if it may be without bounds."""
+    if facts.displaces:
+        raise _Doubt("is displaced by its material")
+    own = own_priority(obj)
+    priority = facts.priority if own is None else own
+    if priority is None:
+        raise _Doubt("has a priority that may change")
+    if evaluated.type != "MESH":
+        return None
+    owner = obj if obj.modifiers or obj.data.shape_keys else obj.data
+    solid = _shapes.get(owner.session_uid)
+    if solid is None:
+        solid = _shapes[owner.session_uid] = _solid(evaluated)
+    if not solid.closed:
+        raise _Doubt("is not closed")
+    medium = (obj.name_full,) if facts.values is None else facts.values
+    return Body(solid, matrix, priority, medium, wants_faces=_wants_faces(obj)) if exact else None
+
+
+def _solid(evaluated: bpy.types.Object) -> Solid:
+    """An evaluated mesh, the same object as long as nothing changes it."""
+    mesh = evaluated.to_mesh()
+    try:
+        mesh.calc_loop_triangles()
+        vertices = np.empty((len(mesh.vertices), 3), dtype=np.float32)
+        triangles = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
+        if len(triangles):
+            mesh.attributes["position"].data.foreach_get("vector", vertices.reshape(-1))
+            mesh.loop_triangles.foreach_get("vertices", triangles.reshape(-1))
+    finally:
+        evaluated.to_mesh_clear()
+    key = hashlib.blake2b(vertices.tobytes() + triangles.tobytes(), digest_size=16).digest()
+    if key not in _solids:
+        _solids[key] = Solid(vertices.astype(np.float64), triangles)
+    return _solids[key]
+
+
+def _forget_unused(survey: _Survey) -> None:
+    kept = {id(row.body.solid) for row in survey.bodies}
+    for shapes in (_shapes, _solids):
+        for key in [key for key, solid in shapes.items() if id(solid) not in kept]:
+            del shapes[key]
+
+
+def _facts(material: bpy.types.Material) -> _Facts:
+    tree = material.node_tree
+    node = dielectric_node(material)
+    still = tree.animation_data is None and material.animation_data is None
+    values = None
+    if (
+        still
+        and not node.inputs["Disperse"].default_value
+        and not any(node.inputs[n].is_linked for n in NEIGHBOUR_VALUES)
+    ):
+        ior, transmittance, depth = (node.inputs[name].default_value for name in NEIGHBOUR_VALUES)
+        values = (ior, tuple(transmittance), depth)
+    priority = node.inputs["Priority"]
+    output = tree.get_output_node("CYCLES")
+    return _Facts(
+        values,
+        priority.default_value if still and not priority.is_linked else None,
+        output is not None and output.inputs["Displacement"].is_linked and material.displacement_method != "BUMP",
+        has_analysis(node),
+    )
+
+
+# Doubting -----------------------------------------------------------------------------------------------------------
+
+
+def _scene_doubts(scene: bpy.types.Scene, facts: dict[bpy.types.Material, _Facts]) -> Iterator[tuple[str, str]]:
+    """What makes a render see other objects than the viewport does."""
+
+    def shown(objects: Iterable[bpy.types.Object]) -> set[bpy.types.Object]:
+        return {obj for obj in objects if any(slot.material in facts for slot in obj.material_slots)}
+
+    for collection in scene.collection.children_recursive:
+        if collection.hide_viewport != collection.hide_render and shown(collection.all_objects):
+            yield collection.name, "is hidden in the viewport alone, or in renders alone"
+    first, *others = scene.view_layers
+    for layer in others:
+        if shown(first.objects) != shown(layer.objects):
+            yield layer.name, f"shows other media than {first.name!r}"
+
+
+def _require_still(obj: bpy.types.Object) -> None:
+    """Raise :class:`_Doubt` if an object may be elsewhere, or without bounds, when the file is rendered."""
+    if obj.mode == "EDIT":
+        raise _Doubt("is being edited")
+    if obj.hide_render != obj.hide_viewport:
+        raise _Doubt("is hidden in the viewport alone, or in renders alone")
+    if _moves(obj):
+        raise _Doubt("may move")
+    if _is_animated(obj.data) or _is_animated(getattr(obj.data, "shape_keys", None)):
+        raise _Doubt("may change its shape")
+    for modifier in obj.modifiers:
+        if modifier.show_render and not _is_settled(modifier):
+            raise _Doubt(f"has the modifier {modifier.name!r}, which may move it")
+
+
+def _moves(obj: bpy.types.Object) -> bool:
+    """Whether anything but the object's own numbers, or those of its parents, may place it."""
+    while obj is not None:
+        if (
+            _is_animated(obj)
+            or obj.constraints
+            or obj.rigid_body is not None
+            or (obj.parent is not None and obj.parent_type != "OBJECT")
+            or obj.instance_type not in ("NONE", "COLLECTION")
+            or obj.particle_systems
+        ):
+            return True
+        obj = obj.parent
+    return False
+
+
+def _is_animated(data: bpy.types.ID | None) -> bool:
+    return data is not None and data.animation_data is not None
+
+
+def _is_settled(modifier: bpy.types.Modifier) -> bool:
+    """Whether it depends on the mesh and on numbers alone."""
+    if modifier.type == "NODES":
+        return modifier.node_group is not None and modifier.node_group.name == OFFSET_GROUP
+    return modifier.type in SETTLED_MODIFIERS and not any(
+        prop.type == "POINTER" and isinstance(getattr(modifier, prop.identifier), bpy.types.ID)
+        for prop in modifier.bl_rna.properties
+    )
+
+
+def _is_exact(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
+    """Whether a render shows the very mesh that the viewport does."""
+    return all(
+        modifier.show_viewport == modifier.show_render
+        and (
+            modifier.type != "SUBSURF"
+            or (
+                modifier.levels == modifier.render_levels
+                and not modifier.use_adaptive_subdivision
+                and not scene.render.use_simplify
+            )
+        )
+        for modifier in obj.modifiers
+    )
+
+
+def _wants_faces(obj: bpy.types.Object) -> bool:
+    """Whether the faces of the mesh are those of the render, and no other object's."""
+    return (
+        obj.data.users == 1
+        and obj.data.library is None
+        and obj.data.shape_keys is None
+        and all(modifier.type == "NODES" for modifier in obj.modifiers)
+    )
+
+
+# Telling ------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What an object is told, and its polygons if they differ."""
+
+    outside: Outside
+    faces: np.ndarray | None = None
+
+
+def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
+    """What each medium is told: what holds for all of its instances."""
+    told: dict[bpy.types.Object, _Told] = {}
+    doubtful = bool(survey.doubts) or any(row.doubt for row in survey.rows if row.medium)
+    boxes = np.array([row.box for row in survey.bodies]).reshape(-1, 2, 3)
+    foreign = _meets(boxes, [row.box for row in survey.rows if not row.medium])
+    # Bodies of one priority that overlap are one: a ray may go from one to the next.
+    priorities = np.array([row.body.priority for row in survey.bodies])
+    foreign = np.isin(priorities, priorities[foreign])
+    near_vague = _meets(boxes, [row.box for row in survey.vague])
+    for index, (row, contact) in enumerate(zip(survey.bodies, survey.contacts)):
+        if doubtful or near_vague[index]:
+            one = _Told(Outside(overlaps_itself=contact.robust))
+        else:
+            one = _told(survey, row, contact, bool(foreign[[index, *contact.partners]].any()))
+        if row.obj in told:
+            merged = told[row.obj].outside.merged(one.outside)
+            one = _Told(merged or Outside(overlaps_itself=contact.robust))
+        told[row.obj] = one
+    for row in survey.rows:
+        if row.medium and (row.body is None or row.obj in survey.elsewhere):
+            told[row.obj] = _Told(Outside())
+    return told
+
+
+def _meets(boxes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
+    """(n,) whether each of the (n, 2, 3) boxes meets any of the others."""
+    meets = np.zeros(len(boxes), dtype=bool)
+    for low, high in others:
+        meets |= np.all((boxes[:, 0] <= high) & (boxes[:, 1] >= low), axis=1)
+    return meets
+
+
+def _told(survey: _Survey, row: _Row, contact: Contact, foreign: bool) -> _Told:
+    level = -1.0 if contact.level is None or contact.robust or survey.vague else float(contact.level)
+    outside = Outside(contact.code, level, contact.robust, foreign)
+    faces = contact.faces
+    if contact.around is not None:
+        around = survey.bodies[contact.around].body
+        if len(around.medium) == 1 or around.priority in survey.mixed:
+            faces = None if faces is None else np.where(faces == MEDIUM, PROBE, faces)
+            outside = replace(outside, code=PROBE if contact.code == MEDIUM else contact.code)
+        else:
+            ior, transmittance, depth = around.medium
+            outside = replace(outside, medium=(float(around.priority), ior, depth), transmittance=transmittance)
+    return _Told(outside, None if faces is None else _by_polygon(row.obj.data, faces))
+
+
+def _by_polygon(mesh: bpy.types.Mesh, triangles: np.ndarray) -> np.ndarray:
+    """Codes of polygons whose triangles agree; the others' are unknown."""
+    polygons = np.empty(len(triangles), dtype=np.int32)
+    mesh.calc_loop_triangles()
+    mesh.loop_triangle_polygons.foreach_get("value", polygons)
+    low = np.full(len(mesh.polygons), NEVER, dtype=np.int8)
+    high = np.zeros(len(low), dtype=np.int8)
+    np.minimum.at(low, polygons, triangles)
+    np.maximum.at(high, polygons, triangles)
+    return np.where(low == high, low, PROBE).astype(np.int8)
+
+
+def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
+    """Write what changed. A material speaks for its objects if all of them are told the same."""
+    users: dict[bpy.types.Material, list[bpy.types.Object]] = {}
+    for obj in told:
+        for material in {slot.material for slot in obj.material_slots} & survey.facts.keys():
+            users.setdefault(material, []).append(obj)
+    others = {slot.material for obj in survey.elsewhere - told.keys() for slot in obj.material_slots}
+    for material, objects in users.items():
+        if not survey.facts[material].can_be_told:
+            continue
+        common = _common(told[obj].outside for obj in objects)
+        if material in others and common is not None:
+            common = Outside(overlaps_itself=common.overlaps_itself) if common.code == PROBE else None
+        _tell_material(material, common or Outside(BY_OBJECT))
+        for obj in objects:
+            _tell_object(obj, None if common else told[obj].outside)
+            _tell_faces(obj, told[obj].faces)
+
+
+def _common(outsides: Iterable[Outside]) -> Outside | None:
+    """What all may be told at once, or None if that is less than some are told."""
+    first, *others = outsides
+    for other in others:
+        first = first and first.merged(other)
+    return first
+
+
+def _tell_material(material: bpy.types.Material, outside: Outside) -> None:
+    node = dielectric_node(material)
+    if material.library is not None or not has_analysis(node):
+        return
+    values = {
+        OUTSIDE_SOCKET: outside.code,
+        LEVEL_SOCKET: outside.level,
+        OVERLAP_SOCKET: outside.overlaps_itself,
+        FOREIGN_SOCKET: outside.foreign,
+        SURROUNDINGS_SOCKET: outside.medium,
+        SURROUNDINGS_COLOR_SOCKET: outside.transmittance,
+    }
+    for name, value in values.items():
+        socket = node.inputs[name]
+        before = socket.default_value
+        if not np.array_equal(np.float32(before if np.isscalar(before) else tuple(before)), np.float32(value)):
+            socket.default_value = value
+
+
+def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
+    """Write an object's custom properties, or with None remove them."""
+    if obj.library is not None:
+        return
+    values: tuple = (None, None, None)
+    if outside is not None:
+        values = (
+            (float(outside.code), outside.level, float(outside.overlaps_itself), float(outside.foreign)),
+            (*outside.medium, 0.0),
+            tuple(outside.transmittance),
+        )
+    for name, value in zip(OBJECT_PROPERTIES, values):
+        before = obj.get(name)
+        if value is None:
+            if before is not None:
+                del obj[name]
+                obj.update_tag()
+        elif before is None or tuple(before) != value:
+            obj[name] = value
+            obj.update_tag()
+
+
+def _tell_faces(obj: bpy.types.Object, faces: np.ndarray | None) -> None:
+    """Write the attribute of a mesh's faces, or with None remove it."""
+    if obj.type != "MESH" or obj.data.library is not None or obj.mode != "OBJECT":
+        return
+    attributes = obj.data.attributes
+    attribute = attributes.get(FACE_ATTRIBUTE)
+    if faces is None:
+        if attribute is not None:
+            attributes.remove(attribute)
+            obj.data.update_tag()
+        return
+    if attribute is None:
+        attribute = attributes.new(FACE_ATTRIBUTE, "INT8", "FACE")
+    before = np.empty(len(faces), dtype=np.int8)
+    attribute.data.foreach_get("value", before)
+    if not np.array_equal(before, faces):
+        attribute.data.foreach_set("value", faces)
+        obj.data.update_tag()
+
+
+def _found(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> Found:
+    def names(*codes: int) -> tuple[str, ...]:
+        return tuple(obj.name for obj, one in told.items() if one.outside.code in codes)
+
+    pairs = {
+        tuple(sorted((row.obj.name, survey.bodies[other].obj.name)))
+        for row, contact in zip(survey.bodies, survey.contacts)
+        for other, *_ in contact.coincident
+    }
+    doubts = survey.doubts + tuple((row.obj.name, row.doubt) for row in survey.rows if row.medium and row.doubt)
+    return Found(
+        known=names(AIR, MEDIUM, NEVER),
+        partly=names(FACES),
+        asking=names(PROBE),
+        overlapping=tuple(obj.name for obj, one in told.items() if one.outside.overlaps_itself),
+        coincident=tuple(sorted(pairs)),
+        doubts=tuple(dict(doubts).items()),
+    )

@@ -1,0 +1,75 @@
+/* What lies outside a surface, as far as an analysis of the scene tells (addon/analysis.py), and checks of it. */
+#pragma once
+
+#include "medium.h"
+
+#define OUTSIDE_UNKNOWN 0   /* the scene is asked */
+#define OUTSIDE_AIR 1
+#define OUTSIDE_MEDIUM 2    /* the one medium that the analysis names */
+#define OUTSIDE_WINNER 3    /* a medium that wins over the surface's own */
+#define OUTSIDE_BY_FACE 4   /* an attribute of each face tells */
+#define OUTSIDE_BY_OBJECT 5 /* the object's own properties tell */
+
+/* One in so many surfaces that the analysis tells of is asked all the same. */
+#define SPOT_CHECKS 64.0
+
+struct Outside {
+  int outside;
+  float level; /* the only priority that may be around, whose nearest surface decides; below 0 there are more */
+  int overlaps_itself;
+  int foreign;   /* foreign objects may stand in the medium or in those that it touches */
+  Medium medium; /* of OUTSIDE_MEDIUM */
+};
+
+/* A medium that splits no light. */
+Medium plain_medium(float priority, float ior, color transmittance, float transmittance_depth)
+{
+  Medium m = air();
+  m.priority = priority;
+  m.ior.at_path = m.ior.white = usable_ior(ior);
+  m.transmittance = transmittance;
+  m.transmittance_depth = transmittance_depth;
+  return m;
+}
+
+/* What the object's own custom properties tell. */
+Outside told_by_object()
+{
+  float object[4] = {OUTSIDE_UNKNOWN, -1.0, 0.0, 1.0};
+  float medium[4] = {0.0, 1.0, 0.0, 0.0};
+  float left[4] = {1.0, 1.0, 1.0, 1.0};
+  getattribute("\001object:nd_outside", object);
+  if (object[0] == OUTSIDE_MEDIUM || object[0] == OUTSIDE_BY_FACE) {
+    getattribute("\001object:nd_surroundings", medium);
+    getattribute("\001object:nd_surroundings_transmittance", left);
+  }
+  Outside told;
+  told.outside = (int)object[0];
+  told.level = object[1];
+  told.overlaps_itself = object[2] > 0.0;
+  told.foreign = object[3] > 0.0;
+  told.medium = plain_medium(medium[0], medium[1], color(left[0], left[1], left[2]), medium[2]);
+  return told;
+}
+
+int told_outside(Outside told)
+{
+  if (told.outside != OUTSIDE_BY_FACE)
+    return told.outside;
+  float face = OUTSIDE_UNKNOWN;
+  getattribute("nd_outside", face);
+  return (int)face;
+}
+
+/* True for one point in SPOT_CHECKS of every face. */
+int spot_check()
+{
+  float place = 9973.0 * u + 7919.0 * v;
+  return place - floor(place) < 1.0 / SPOT_CHECKS;
+}
+
+/* Another direction to the same side. */
+vector askew(vector direction)
+{
+  return normalize(direction + 0.37 * normalize(dPdu) + 0.21 * normalize(cross(direction, dPdu)));
+}
