@@ -8,7 +8,7 @@ WHEEL := wheels/colour_science-$(COLOUR)-py3-none-any.whl
 # What "blender --command extension" runs, with its list of valid tags, without a Blender application.
 BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli import cli_extension_handler as run; sys.exit(run(sys.argv[1:]))'
 
-.PHONY: demo test extension clean
+.PHONY: demo test bench bench-quick extension clean
 
 demo: $(STAMP)
 	$(PYTHON) -m nested_dielectric demo
@@ -16,6 +16,12 @@ demo: $(STAMP)
 # Small renders mostly wait for one thread that compiles shaders, so two files at a time take half as long.
 test: $(STAMP)
 	$(PYTHON) -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+
+bench: $(STAMP)
+	$(PYTHON) benchmarks/bench.py
+
+bench-quick: $(STAMP)
+	$(PYTHON) benchmarks/bench.py --quick
 
 extension: $(STAMP) $(WHEEL)
 	@mkdir -p $(DIST)

@@ -1,0 +1,193 @@
+"""Plots and tables of the benchmark's results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
+
+from bench_errors import Floor
+
+BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
+
+LABELS = {
+    "naive": "naive Glass",
+    "split": "hand-split Glass",
+    "ours": "nested dielectrics",
+    "ours_no_analysis": "without analysis",
+    "brute": "one render a wavelength",
+    "luxcore": "LuxCore",
+    "mitsuba": "Mitsuba",
+}
+
+STYLES = {
+    "naive": {"color": "tab:red"},
+    "split": {"color": "black"},
+    "ours": {"color": "tab:blue"},
+    "ours_no_analysis": {"color": "tab:cyan", "linestyle": "--"},
+    "brute": {"color": "tab:gray"},
+    "luxcore": {"color": "tab:green"},
+    "mitsuba": {"color": "tab:orange"},
+}
+
+
+# Plots --------------------------------------------------------------------------------------------------------------
+
+
+def seconds_per_sample(result: dict, way: str) -> float:
+    """CPU seconds of a whole picture's sample: hand-split Glass's times the ratio of the way's."""
+    timing = result["timing"]
+    split = timing["cpu_microseconds_per_sample"] * 1e-6 * result["resolution"] ** 2
+    # One render a wavelength samples as Glass does; what it exports anew is left out.
+    return split * (1.0 if way == "brute" else timing["ways"][way]["ratio"])
+
+
+def plot(result: dict, path: Path) -> None:
+    """Error against time, by pixels and by blocks, to a PNG."""
+    figure = Figure(figsize=(9.0, 4.4), layout="constrained")
+    for axis, part, title in zip(figure.subplots(1, 2), ("", "block_"), ("pixels", "8 x 8 blocks"), strict=True):
+        for way in sorted(result["errors"], key=list(LABELS).index):
+            draw(axis, result, way, part)
+        axis.set_xscale("log")
+        axis.set_yscale("log")
+        axis.xaxis.set_minor_formatter(NullFormatter())
+        axis.yaxis.set_minor_formatter(NullFormatter())
+        axis.set_xlabel("CPU seconds of sampling")
+        axis.set_title(title)
+        axis.grid(alpha=0.3)
+        axis.set_ylabel("relative mean square error")
+    figure.suptitle(f"{result['title']}, {result['resolution']} x {result['resolution']}")
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    figure.savefig(path, dpi=100)
+
+
+def draw(axis: Axes, result: dict, way: str, part: str) -> None:
+    """One way's curve, and where it cannot go below."""
+    points = result["errors"][way]["points"]
+    times = np.array([point["samples"] for point in points]) * seconds_per_sample(result, way)
+    errors = np.array([point[part + "relmse"] for point in points])
+    shown = errors > 0.0
+    axis.plot(times[shown], errors[shown], marker=".", label=LABELS[way], **STYLES[way])
+    lowest = Floor(**result["errors"][way][part + "floor"])
+    if lowest.certain:
+        axis.axhline(lowest.relmse, color=STYLES[way]["color"], linestyle=":", linewidth=1.0)
+
+
+# Tables -------------------------------------------------------------------------------------------------------------
+
+
+def tables(results: Sequence[dict]) -> str:
+    """All tables in Markdown."""
+    return "\n\n".join((time_table(results), cost_table(results), error_table(results), *remarks(results)))
+
+
+def renewed(text: str, content: str) -> str:
+    """A page with other tables between its two marks."""
+    before, begin, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not begin or not end:
+        raise ValueError(f"the page needs the lines {BEGIN} and {END}")
+    return f"{before}{BEGIN}\n\n{content}\n\n{END}{after}"
+
+
+def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table whose first column is of words."""
+    lines = [header, ["---"] + ["---:"] * (len(header) - 1), *rows]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def time_table(results: Sequence[dict]) -> str:
+    """Sampling time as a multiple of hand-split Glass's."""
+    shown = [
+        way for way in LABELS if way not in ("split", "brute") and any(way in r["timing"]["ways"] for r in results)
+    ]
+    header = ["Time of sampling, hand-split Glass = 1", "Glass, µs", *(LABELS[way] for way in shown), "rounds"]
+    rows = []
+    for result in results:
+        timing = result["timing"]
+        cells = [ratio_cell(timing["ways"].get(way)) for way in shown]
+        micros = f"{timing['cpu_microseconds_per_sample']:.1f}"
+        rows.append([result["title"], micros, *cells, str(len(timing["ways"]["split"]["ratios"]))])
+    return markdown(header, rows)
+
+
+def ratio_cell(way: dict | None) -> str:
+    """A ratio and its range over the rounds."""
+    if way is None:
+        return ""
+    return f"{way['ratio']:.2f} ({min(way['ratios']):.2f}–{max(way['ratios']):.2f})"
+
+
+def cost_table(results: Sequence[dict]) -> str:
+    """Preparation and memory."""
+    header = ["CPU s and MB", "Glass: first sample", "again", "ours: prepare", "first sample", "again"]
+    header += ["Glass, MB", "ours, MB"]
+    rows = []
+    for result in results:
+        glass, ours = (result["preparation"][way] for way in ("split", "ours"))
+        again = [result["timing"]["ways"][way]["again_cpu"] for way in ("split", "ours")]
+        seconds = (
+            glass["first_render"]["cpu"],
+            again[0],
+            ours["prepare"]["cpu"],
+            ours["first_render"]["cpu"],
+            again[1],
+        )
+        megabytes = (result["memory"][way]["scene"] for way in ("split", "ours"))
+        rows.append([result["title"], *(f"{value:.2f}" for value in seconds), *(f"{value:.0f}" for value in megabytes)])
+    return markdown(header, rows)
+
+
+def error_table(results: Sequence[dict]) -> str:
+    """Errors at the most samples, and what is left without noise."""
+    floored = [way for way in LABELS if way != "split" and any(way in result["errors"] for result in results)]
+    header = ["Error (relMSE) × 10⁶", "samples", "Glass", "ours", *(f"floor: {LABELS[way]}" for way in floored)]
+    rows = []
+    for result in results:
+        errors = result["errors"]
+        last = [errors[way]["points"][-1] for way in ("split", "ours")]
+        cells = [floor_cell(errors[way]["floor"]) if way in errors else "" for way in floored]
+        rows.append([result["title"], str(last[0]["samples"]), *(millionths(p["relmse"]) for p in last), *cells])
+    return markdown(header, rows)
+
+
+def floor_cell(found: dict) -> str:
+    """A floor with its standard error, bold where it is one."""
+    text = f"{millionths(found['relmse'])} ± {millionths(found['standard_error'])}"
+    return f"**{text}**" if Floor(**found).certain else text
+
+
+def millionths(value: float) -> str:
+    """A number times 10⁶ with two digits."""
+    return f"{float(f'{value * 1e6:.2g}'):.10g}"
+
+
+def remarks(results: Sequence[dict]) -> list[str]:
+    """Where ours is better than naive Glass ever gets."""
+    found = []
+    for result in results:
+        if "naive" not in result["errors"]:
+            continue
+        lowest = Floor(**result["errors"]["naive"]["floor"])
+        if lowest.certain:
+            samples = samples_for(result["errors"]["ours"]["points"], lowest.relmse)
+            found.append(
+                f"- {result['title']}: nested dielectrics are as good as naive Glass with any number of samples after "
+                f"{samples:.3g} samples, {samples * seconds_per_sample(result, 'ours'):.2g} CPU seconds."
+            )
+    return ["\n".join(found)] if found else []
+
+
+def samples_for(points: Sequence[dict], error: float) -> float:
+    """Samples at which a curve reaches an error, along straight lines on log-log paper, the ends' drawn on."""
+    counts, errors = (
+        np.log([point[key] for point in points if point["relmse"] > 0.0]) for key in ("samples", "relmse")
+    )
+    place = int(np.clip(np.searchsorted(-errors, -np.log(error)), 1, len(errors) - 1))
+    slope = (counts[place] - counts[place - 1]) / (errors[place] - errors[place - 1])
+    return float(np.exp(counts[place - 1] + (np.log(error) - errors[place - 1]) * slope))
