@@ -19,7 +19,7 @@ import numpy as np
 
 from . import contacts
 from .contacts import AIR, FACES, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
-from .materials import dielectric_node, dielectrics
+from .materials import dielectric_node
 from .media import media, own_priority
 from .node_group import (
     BY_OBJECT,
@@ -143,12 +143,13 @@ def is_analysed(scene: bpy.types.Scene) -> bool:
 
 
 def clear_analysis(scene: bpy.types.Scene) -> None:
-    """Make all media of a scene ask it again while it is rendered."""
+    """Make all media of a scene ask it again while it is rendered, and those of other scenes until they are analysed."""
     scene.pop(ANALYSED, None)
-    for obj in media(scene):
+    for obj in bpy.data.objects:
         _tell_object(obj, None)
         _tell_faces(obj, None)
-        for _, material in dielectrics(obj):
+    for material in bpy.data.materials:
+        if dielectric_node(material) is not None:
             _tell_material(material, Outside())
 
 
@@ -341,7 +342,8 @@ class _Survey:
     @cached_property
     def elsewhere(self) -> set[bpy.types.Object]:
         """Objects of other scenes, where what holds in this one need not."""
-        return {obj for scene in bpy.data.scenes if scene != self.scene for obj in scene.objects}
+        others = [scene for scene in bpy.data.scenes if scene != self.scene]
+        return {obj for scene in others for obj in (*scene.objects, *media(scene))}
 
     @cached_property
     def bodies(self) -> list[_Row]:
@@ -378,9 +380,18 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     rows: list[_Row] = []
     plain = True
     for instance in depsgraph.object_instances:
-        plain = plain and not instance.is_instance
         if instance.object.type in _SHAPED:
-            rows.append(_row(scene, facts, instance.object, np.array(instance.matrix_world)))
+            row = _row(scene, facts, instance.object, np.array(instance.matrix_world))
+            rows.append(_instanced(row, instance.parent.original) if instance.is_instance else row)
+        plain = plain and not instance.is_instance
+    hidden = {obj for each in bpy.data.scenes for obj in each.objects} - {row.obj for row in rows}
+    rows += [
+        _Row(obj, EVERYWHERE)
+        for obj in hidden
+        if obj.type in _SHAPED
+        and not obj.hide_render
+        and not any(slot.material in facts for slot in obj.material_slots)
+    ]
     known = {row.obj.name: index for index, row in enumerate(rows)} if plain else {}
     doubts = dict(_scene_doubts(scene, facts))
     seen = {row.obj for row in rows}
@@ -421,7 +432,10 @@ def _row(
     try:
         _require_still(obj)
         if not dielectric:
-            return _Row(obj, box)
+            displaced = any(
+                slot.material and slot.material.displacement_method != "BUMP" for slot in obj.material_slots
+            )
+            return _Row(obj, box if _is_exact(scene, obj) and not displaced else EVERYWHERE)
         exact = _is_exact(scene, obj) and dielectric == {slot.material for slot in obj.material_slots} & facts.keys()
         if len(dielectric) == 1:
             (material,) = dielectric
@@ -433,6 +447,20 @@ def _row(
         return _Row(obj, box + np.array([[-margin], [margin]]), True)
     except _Doubt as doubt:
         return _Row(obj, EVERYWHERE, bool(dielectric), doubt=str(doubt))
+
+
+def _instanced(row: _Row, instancer: bpy.types.Object) -> _Row:
+    """The row of an instance, which moves with all that places it."""
+    try:
+        if any(collection.hide_render != collection.hide_viewport for collection in bpy.data.collections):
+            raise _Doubt("is instanced where a collection is hidden in the viewport alone, or in renders alone")
+        for obj in {instancer} | {obj for obj in bpy.data.objects if obj.instance_collection is not None}:
+            _require_still(obj)
+            if obj.type != "EMPTY":
+                raise _Doubt(f"is instanced by {obj.name!r}, which may do so in another way in a render")
+    except _Doubt as doubt:
+        return replace(row, box=EVERYWHERE, body=None, doubt=str(doubt))
+    return row
 
 
 def _body(
@@ -533,6 +561,8 @@ def _require_still(obj: bpy.types.Object) -> None:
     if _is_animated(obj.data) or _is_animated(getattr(obj.data, "shape_keys", None)):
         raise _Doubt("may change its shape")
     for modifier in obj.modifiers:
+        if modifier.show_render and not modifier.show_viewport:
+            raise _Doubt(f"has the modifier {modifier.name!r} in renders alone")
         if modifier.show_render and not _is_settled(modifier):
             raise _Doubt(f"has the modifier {modifier.name!r}, which may move it")
 
@@ -542,6 +572,7 @@ def _moves(obj: bpy.types.Object) -> bool:
     while obj is not None:
         if (
             _is_animated(obj)
+            or (obj.parent is not None and _is_animated(obj.parent.data))
             or obj.constraints
             or obj.rigid_body is not None
             or (obj.parent is not None and obj.parent_type != "OBJECT")
@@ -568,19 +599,23 @@ def _is_settled(modifier: bpy.types.Modifier) -> bool:
 
 
 def _is_exact(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
-    """Whether a render shows the very mesh that the viewport does."""
-    return all(
-        modifier.show_viewport == modifier.show_render
-        and (
-            modifier.type != "SUBSURF"
-            or (
-                modifier.levels == modifier.render_levels
-                and not modifier.use_adaptive_subdivision
-                and not scene.render.use_simplify
-            )
-        )
-        for modifier in obj.modifiers
+    """Whether a render shows the very mesh that the viewport does, to all rays."""
+    return (
+        not scene.render.use_simplify
+        and all(getattr(obj, f"visible_{ray}") for ray in _RAYS)
+        and all(map(_is_same_in_renders, obj.modifiers))
     )
+
+
+_RAYS = ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow")
+
+
+def _is_same_in_renders(modifier: bpy.types.Modifier) -> bool:
+    if modifier.show_viewport != modifier.show_render:
+        return False
+    if modifier.type == "SUBSURF":
+        return modifier.levels == modifier.render_levels and not modifier.use_adaptive_subdivision
+    return modifier.type != "SCREW" or modifier.steps == modifier.render_steps
 
 
 def _wants_faces(obj: bpy.types.Object) -> bool:
@@ -670,6 +705,8 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
     for obj in told:
         for material in {slot.material for slot in obj.material_slots} & survey.facts.keys():
             users.setdefault(material, []).append(obj)
+    for material in survey.facts.keys() - users.keys():
+        _tell_material(material, Outside())
     others = {slot.material for obj in survey.elsewhere - told.keys() for slot in obj.material_slots}
     for material, objects in users.items():
         if not survey.facts[material].can_be_told:
@@ -711,13 +748,13 @@ def _tell_material(material: bpy.types.Material, outside: Outside) -> None:
 
 
 def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
-    """Write an object's custom properties, or with None remove them."""
+    """Write an object's custom properties, or with None remove them. Zeros tell nothing, as in osl/outside.h."""
     if obj.library is not None:
         return
     values: tuple = (None, None, None)
     if outside is not None:
         values = (
-            (float(outside.code), outside.level, float(outside.overlaps_itself), float(outside.foreign)),
+            (float(outside.code), outside.level + 1.0, float(outside.overlaps_itself), float(not outside.foreign)),
             (*outside.medium, 0.0),
             tuple(outside.transmittance),
         )

@@ -106,7 +106,12 @@ def time_table(results: Sequence[dict]) -> str:
     shown = [
         way for way in LABELS if way not in ("split", "brute") and any(way in r["timing"]["ways"] for r in results)
     ]
-    header = ["Time of sampling, hand-split Glass = 1", "Glass, µs", *(LABELS[way] for way in shown), "rounds"]
+    header = [
+        "Time of sampling, hand-split Glass = 1",
+        "Glass, CPU µs a sample",
+        *(LABELS[way] for way in shown),
+        "rounds",
+    ]
     rows = []
     for result in results:
         timing = result["timing"]

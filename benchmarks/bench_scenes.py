@@ -495,9 +495,3 @@ SCENES: dict[str, Callable[[], BenchScene]] = {
 
 DISPERSING = ("gems",)
 """Scenes whose media split light into colours."""
-
-
-def volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
-    """Volume that a closed surface encloses; positive where triangles are counter-clockwise seen from outside."""
-    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)

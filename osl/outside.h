@@ -32,10 +32,11 @@ Medium plain_medium(float priority, float ior, color transmittance, float transm
   return m;
 }
 
-/* What the object's own custom properties tell. */
+/* What the object's own custom properties tell. One without them reads zeros, which tell nothing: the level counts from
+ * 1, and the last number tells that nothing foreign is near. */
 Outside told_by_object()
 {
-  float object[4] = {OUTSIDE_UNKNOWN, -1.0, 0.0, 1.0};
+  float object[4] = {OUTSIDE_UNKNOWN, 0.0, 0.0, 0.0};
   float medium[4] = {0.0, 1.0, 0.0, 0.0};
   float left[4] = {1.0, 1.0, 1.0, 1.0};
   getattribute("\001object:nd_outside", object);
@@ -45,9 +46,9 @@ Outside told_by_object()
   }
   Outside told;
   told.outside = (int)object[0];
-  told.level = object[1];
+  told.level = object[1] - 1.0;
   told.overlaps_itself = object[2] > 0.0;
-  told.foreign = object[3] > 0.0;
+  told.foreign = object[3] == 0.0;
   told.medium = plain_medium(medium[0], medium[1], color(left[0], left[1], left[2]), medium[2]);
   return told;
 }

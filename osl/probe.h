@@ -120,6 +120,7 @@ int agrees(int valid, Medium outer, Surroundings found)
   if (!valid || found.medium.priority <= found.own_priority)
     return !valid && found.medium.priority <= found.own_priority;
   return found.medium.priority == outer.priority && abs(found.medium.ior.white - outer.ior.white) < 1e-4 &&
+         abs(found.medium.transmittance_depth - outer.transmittance_depth) <= 1e-4 * outer.transmittance_depth &&
          length((vector)(found.medium.transmittance - outer.transmittance)) < 1e-3;
 }
 

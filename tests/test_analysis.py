@@ -129,7 +129,7 @@ def told_foreign(obj: bpy.types.Object) -> bool:
     """Whether the shader looks out for foreign objects."""
     sockets = inputs(obj.active_material)
     if sockets["Outside"].default_value == BY_OBJECT:
-        return OBJECT_PROPERTIES[0] not in obj or obj[OBJECT_PROPERTIES[0]][3] > 0.0
+        return OBJECT_PROPERTIES[0] not in obj or obj[OBJECT_PROPERTIES[0]][3] == 0.0
     return sockets["Foreign Objects"].default_value
 
 
@@ -470,8 +470,8 @@ def test_objects_of_one_material_are_told_each_for_itself_where_their_surroundin
     inside, outside = ball("Inside", 0.5, glass, 1), ball("Outside", 0.5, glass, 2, (3, 0, 0))
     nd.analyse(scene)
     assert inputs(glass)["Outside"].default_value == BY_OBJECT == 5
-    assert told_by_object(inside) == ((MEDIUM, -1.0, 0.0, 0.0), (5.0, 1.33, 1.0, 0.0), (1.0,) * 4)
-    assert told_by_object(outside)[0] == (AIR, -1.0, 0.0, 0.0)
+    assert told_by_object(inside) == ((MEDIUM, 0.0, 0.0, 1.0), (5.0, 1.33, 1.0, 0.0), (1.0,) * 4)
+    assert told_by_object(outside)[0] == (AIR, 0.0, 0.0, 1.0)
     inside.location.x = 30.0
     nd.analyse(scene)
     assert inputs(glass)["Outside"].default_value == AIR
