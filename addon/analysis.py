@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 
 import bpy
 import numpy as np
@@ -379,10 +379,12 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     facts = {material: _facts(material) for material in bpy.data.materials if dielectric_node(material) is not None}
     rows: list[_Row] = []
     plain = True
+    instancing_doubt = cache(_instancing_doubt)
     for instance in depsgraph.object_instances:
         if instance.object.type in _SHAPED:
             row = _row(scene, facts, instance.object, np.array(instance.matrix_world))
-            rows.append(_instanced(row, instance.parent.original) if instance.is_instance else row)
+            doubt = instance.is_instance and (instancing_doubt() or instancing_doubt(instance.parent.original))
+            rows.append(replace(row, box=EVERYWHERE, body=None, doubt=doubt) if doubt else row)
         plain = plain and not instance.is_instance
     hidden = {obj for each in bpy.data.scenes for obj in each.objects} - {row.obj for row in rows}
     rows += [
@@ -449,18 +451,21 @@ def _row(
         return _Row(obj, EVERYWHERE, bool(dielectric), doubt=str(doubt))
 
 
-def _instanced(row: _Row, instancer: bpy.types.Object) -> _Row:
-    """The row of an instance, which moves with all that places it."""
-    try:
+def _instancing_doubt(instancer: bpy.types.Object | None = None) -> str:
+    """Why an object's instances may be elsewhere when the file is rendered, or with None those of all; empty if not."""
+    instancers = {instancer}
+    if instancer is None:
         if any(collection.hide_render != collection.hide_viewport for collection in bpy.data.collections):
-            raise _Doubt("is instanced where a collection is hidden in the viewport alone, or in renders alone")
-        for obj in {instancer} | {obj for obj in bpy.data.objects if obj.instance_collection is not None}:
+            return "is instanced where a collection is hidden in the viewport alone, or in renders alone"
+        instancers = {obj for obj in bpy.data.objects if obj.instance_collection is not None}
+    try:
+        for obj in instancers:
             _require_still(obj)
             if obj.type != "EMPTY":
                 raise _Doubt(f"is instanced by {obj.name!r}, which may do so in another way in a render")
     except _Doubt as doubt:
-        return replace(row, box=EVERYWHERE, body=None, doubt=str(doubt))
-    return row
+        return str(doubt)
+    return ""
 
 
 def _body(
@@ -590,12 +595,17 @@ def _is_animated(data: bpy.types.ID | None) -> bool:
 
 def _is_settled(modifier: bpy.types.Modifier) -> bool:
     """Whether it depends on the mesh and on numbers alone."""
-    if modifier.type == "NODES":
-        return modifier.node_group is not None and modifier.node_group.name == OFFSET_GROUP
+    if is_offset(modifier):
+        return True
     return modifier.type in SETTLED_MODIFIERS and not any(
         prop.type == "POINTER" and isinstance(getattr(modifier, prop.identifier), bpy.types.ID)
         for prop in modifier.bl_rna.properties
     )
+
+
+def is_offset(modifier: bpy.types.Modifier) -> bool:
+    """Whether it is the modifier that parts faces in the same place, which keeps all faces."""
+    return modifier.type == "NODES" and modifier.node_group is not None and modifier.node_group.name == OFFSET_GROUP
 
 
 def _is_exact(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:

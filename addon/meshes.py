@@ -77,19 +77,3 @@ def connected(count: int, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         apart = np.flatnonzero(a != b)
         a, b = a.take(apart), b.take(apart)
     return root
-
-
-def solid_angles(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """Return the signed solid angles of triangles about the origin, positive where it lies on their inner side.
-
-    Van Oosterom and Strackee 1983, The solid angle of a plane triangle. The sum over a closed mesh is 4 pi times its
-    winding number (Jacobson, Kavan and Sorkine-Hornung 2013, Robust inside-outside segmentation).
-
-    :param a: (n, 3) first corners; b, c: the others.
-    :return: (n,) steradians.
-    """
-    la, lb, lc = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
-    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
-    cosines = (np.einsum("ij,ij->i", u, v) for u, v in ((a, b), (b, c), (c, a)))
-    ab, bc, ca = cosines
-    return 2.0 * np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb)

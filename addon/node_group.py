@@ -78,18 +78,34 @@ _SOCKET_TYPES = {
 
 _ANALYSIS_SOCKETS = {
     OUTSIDE_SOCKET: (
+        "Around",
         "INT",
         PROBE,
         "What lies outside: 0 the scene is asked, 1 air, 2 the surroundings below, 3 a winner, "
         "4 each face tells, 5 each object tells",
     ),
-    LEVEL_SOCKET: ("FLOAT", -1.0, "The only priority around, whose nearest surface decides; below 0 there may be more"),
-    OVERLAP_SOCKET: ("BOOL", False, "Objects that overlap themselves are one body"),
-    FOREIGN_SOCKET: ("BOOL", True, "Objects that are no media may stand in the media"),
-    SURROUNDINGS_SOCKET: ("VECTOR", (0.0, 1.0, 0.0), "Priority, IOR and Transmittance Depth of the medium outside"),
-    SURROUNDINGS_COLOR_SOCKET: ("COLOR", (1.0, 1.0, 1.0, 1.0), "Transmittance of the medium outside"),
+    LEVEL_SOCKET: (
+        "AroundLevel",
+        "FLOAT",
+        -1.0,
+        "The only priority around, whose nearest surface decides; below 0 there may be more",
+    ),
+    OVERLAP_SOCKET: ("OverlapsItself", "BOOL", False, "Objects that overlap themselves are one body"),
+    FOREIGN_SOCKET: ("ForeignNear", "BOOL", True, "Objects that are no media may stand in the media"),
+    SURROUNDINGS_SOCKET: (
+        "AroundMedium",
+        "VECTOR",
+        (0.0, 1.0, 0.0),
+        "Priority, IOR and Transmittance Depth of the medium outside",
+    ),
+    SURROUNDINGS_COLOR_SOCKET: (
+        "AroundTransmittance",
+        "COLOR",
+        (1.0, 1.0, 1.0, 1.0),
+        "Transmittance of the medium outside",
+    ),
 }
-_ANALYSIS_INPUTS = ("Around", "AroundLevel", "OverlapsItself", "ForeignNear", "AroundMedium", "AroundTransmittance")
+"""The shader's name, kind, default and description of what an analysis tells all objects of a material."""
 
 
 def ensure_group() -> bpy.types.NodeTree:
@@ -231,7 +247,7 @@ def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:
         default_closed=True,
         description="Which media the objects of this material touch; kept by the extension, spares rays",
     )
-    for name, (kind, default, description) in _ANALYSIS_SOCKETS.items():
+    for name, (_, kind, default, description) in _ANALYSIS_SOCKETS.items():
         socket = interface.new_socket(
             name, in_out="INPUT", socket_type=_SOCKET_TYPES[kind], parent=panel, description=description
         )
@@ -269,10 +285,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     kinds = {
         parameter.osl_name: "INT" if parameter.kind in ("MENU", "BOOL") else parameter.kind for parameter in SOCKETS
     }
-    kinds |= {
-        osl_name: "INT" if kind == "BOOL" else kind
-        for osl_name, (kind, *_) in zip(_ANALYSIS_INPUTS, _ANALYSIS_SOCKETS.values())
-    }
+    kinds |= {osl_name: "INT" if kind == "BOOL" else kind for osl_name, kind, *_ in _ANALYSIS_SOCKETS.values()}
     kinds |= {
         "Requests": "COLOR",
         "CountsPortals": "SHADER",
@@ -294,7 +307,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         if parameter.kind == "MENU":
             source = _menu(tree, source, parameter)
         links.new(source, script.inputs[parameter.osl_name])
-    for osl_name, name in zip(_ANALYSIS_INPUTS, _ANALYSIS_SOCKETS):
+    for name, (osl_name, *_) in _ANALYSIS_SOCKETS.items():
         links.new(inputs.outputs[name], script.inputs[osl_name])
     spectral = _view_layer_attribute(tree, "render.use_motion_blur").outputs["Fac"]
     coefficients, absorbs = _absorption_coefficients(tree, inputs)

@@ -2,7 +2,8 @@
 
 Of two faces in one place a ray meets either, and a probe finds only one. The weaker medium's are moved into the stronger one,
 where they are not seen: outwards where the faces look against each other, inwards where they look the same way. So what is
-seen keeps its shape. Only where the stronger one's lie on part of a larger face are they moved themselves, outwards. A Geometry Nodes modifier moves them by an attribute of the mesh, in a render without the extension too.
+seen keeps its shape. Only where the stronger one's lie on part of a larger face are they moved themselves, outwards. A
+Geometry Nodes modifier moves them by an attribute of the mesh, in a render without the extension too.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from .analysis import Coincidence, coincidences
+from .analysis import Coincidence, coincidences, is_offset
 from .checks import Problem
 from .node_group import OFFSET_GROUP
 
@@ -58,12 +59,8 @@ def _is_movable(obj: bpy.types.Object) -> bool:
         and mesh.users == 1
         and mesh.shape_keys is None
         and obj.mode == "OBJECT"
-        and all(_is_offset(modifier) for modifier in obj.modifiers)
+        and all(map(is_offset, obj.modifiers))
     )
-
-
-def _is_offset(modifier: bpy.types.Modifier) -> bool:
-    return modifier.type == "NODES" and modifier.node_group is not None and modifier.node_group.name == OFFSET_GROUP
 
 
 def offsets(count: int, corners: np.ndarray, normals: np.ndarray, heights: np.ndarray) -> np.ndarray:
@@ -99,7 +96,7 @@ def _move(found: Coincidence, distance: float) -> None:
     before = np.zeros(local.size, dtype=np.float32)
     attribute.data.foreach_get("vector", before)
     attribute.data.foreach_set("vector", before + local.reshape(-1).astype(np.float32))
-    if not any(map(_is_offset, found.obj.modifiers)):
+    if not any(map(is_offset, found.obj.modifiers)):
         found.obj.modifiers.new(OFFSET_GROUP, "NODES").node_group = _ensure_group()
     mesh.update_tag()
 

@@ -153,7 +153,7 @@ def measure(name: str, plan: Plan, deadline: float) -> dict:
 def ways(disperses: bool, without_analysis: bool) -> list[str]:
     """Ways that Cycles renders a scene in. Where media disperse none overlap: naive Glass is hand-split Glass."""
     kinds = ["split", "ours"] if disperses else ["naive", "split", "ours"]
-    if without_analysis and hasattr(nd, "clear_analysis"):
+    if without_analysis:
         kinds.append("ours_no_analysis")
     return kinds + ["brute"] * disperses
 

@@ -20,6 +20,8 @@ from bench_scenes import AIR, SCENES, Body, joined, mesh_of
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
+from nested_dielectric import meshes
+
 OWN = "own"
 """Face attribute that tells a surface's own faces from those that cutters left."""
 
@@ -53,16 +55,9 @@ class Surface:
     @cached_property
     def labels(self) -> np.ndarray:
         """Number of the connected component of every triangle, (m,), counted from 0."""
-        labels = np.arange(len(self.vertices))
-        while True:
-            corners = labels[self.triangles]
-            lowest = corners.min(axis=1)
-            if np.array_equal(lowest, corners.max(axis=1)):
-                return np.unique(lowest, return_inverse=True)[1]
-            for corner in corners.T:
-                np.minimum.at(labels, corner, lowest)
-            while not np.array_equal(labels, labels[labels]):
-                labels = labels[labels]
+        a, b, c = self.triangles.T
+        root = meshes.connected(len(self.vertices), np.concatenate([a, b]), np.concatenate([b, c]))
+        return np.unique(root[a], return_inverse=True)[1]
 
     def kept(self, triangles: np.ndarray) -> Surface:
         """Some of the triangles."""

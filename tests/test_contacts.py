@@ -12,6 +12,22 @@ from nested_dielectric.contacts import AIR, FACES, MEDIUM, NEVER, PROBE, Body, M
 OUTSIDE = 1e-6
 
 
+def solid_angles(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Return the signed solid angles of triangles about the origin, positive where it lies on their inner side.
+
+    Van Oosterom and Strackee 1983, The solid angle of a plane triangle. The sum over a closed mesh is 4 pi times its
+    winding number (Jacobson, Kavan and Sorkine-Hornung 2013, Robust inside-outside segmentation).
+
+    :param a: (n, 3) first corners; b, c: the others.
+    :return: (n,) steradians.
+    """
+    la, lb, lc = (np.linalg.norm(corner, axis=1) for corner in (a, b, c))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c))
+    cosines = (np.einsum("ij,ij->i", u, v) for u, v in ((a, b), (b, c), (c, a)))
+    ab, bc, ca = cosines
+    return 2.0 * np.arctan2(volume, la * lb * lc + ab * lc + bc * la + ca * lb)
+
+
 def icosphere(subdivisions: int = 2, radius: float = 1.0, centre=(0.0, 0.0, 0.0)) -> Solid:
     phi = (1.0 + 5.0**0.5) / 2.0
     vertices = [(-1, phi, 0), (1, phi, 0), (-1, -phi, 0), (1, -phi, 0), (0, -1, phi), (0, 1, phi)]
@@ -81,7 +97,7 @@ def winding(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     result = []
     for some in np.array_split(points, max(1, len(points) * len(triangles) // 200_000)):
         corners = (triangles[None] - some[:, None, None]).reshape(-1, 3, 3).transpose(1, 0, 2)
-        result.append(meshes.solid_angles(*corners).reshape(len(some), -1).sum(axis=1))
+        result.append(solid_angles(*corners).reshape(len(some), -1).sum(axis=1))
     return np.rint(np.concatenate(result) / (4.0 * np.pi)).astype(int)
 
 
