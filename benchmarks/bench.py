@@ -34,7 +34,7 @@ from bench_errors import Reference, block_means, floor, relative_error  # noqa: 
 from bench_report import plot, renewed, tables  # noqa: E402
 from bench_scenes import DISPERSING, SCENES, BenchScene  # noqa: E402
 from bench_worker import WAVELENGTHS, Built, Cost, Worker, save  # noqa: E402
-from hand_split import Piece, split  # noqa: E402
+from hand_split import Piece, Split, split  # noqa: E402
 from scenes import BOUNCES  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
@@ -93,10 +93,12 @@ def measure(name: str, plan: Plan, deadline: float) -> dict:
     with ExitStack() as stack:
         disperses = name in DISPERSING
         workers = {way: stack.enter_context(closing(Worker(way))) for way in ways(disperses, plan.without_analysis)}
-        scene, pieces = loaded(name)  # while the processes start
-        peers = usable_peers(scene, pieces) if plan.peers else None
+        scene, parts = loaded(name)  # while the processes start
+        if parts.hidden:
+            workers["passed"] = stack.enter_context(closing(Worker("passed")))
+        peers = usable_peers(scene, parts.pieces) if plan.peers else None
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        save(folder, scene, pieces)
+        save(folder, scene, parts)
 
         def build(worker: Worker) -> Built:
             return worker.build(folder, plan.resolution)
@@ -114,6 +116,7 @@ def measure(name: str, plan: Plan, deadline: float) -> dict:
             if len(built) < plan.preparations and time.monotonic() < latest:
                 built.append(interleaved(workers, build, place + 1))
         timing = timings(rounds, timed, plan.resolution)
+        workers.pop("passed", None)  # the picture of hand-split Glass
         left = (deadline - time.monotonic()) * (0.6 if peers else 0.9)
         samples = affordable(costs_on_the_wall(workers, rounds, timed), plan, left)
         counts = plan.counts(samples)
@@ -130,7 +133,7 @@ def measure(name: str, plan: Plan, deadline: float) -> dict:
         "bodies": len(scene.bodies),
         "triangles": {
             "bodies": sum(len(body.triangles) for body in scene.bodies),
-            "pieces": sum(len(piece.triangles) for piece in pieces),
+            "pieces": sum(len(piece.triangles) for piece in parts.pieces),
         },
         "machine": {"cores": os.process_cpu_count(), "blender": bpy.app.version_string},
         "resolution": plan.resolution,
@@ -344,7 +347,7 @@ def usable_peers(scene: BenchScene, pieces: Sequence[Piece]) -> Peers | None:
 # Running ------------------------------------------------------------------------------------------------------------
 
 
-def loaded(name: str) -> tuple[BenchScene, list[Piece]]:
+def loaded(name: str) -> tuple[BenchScene, Split]:
     """A scene and its hand-split pieces, kept in ``out/bench`` for as long as what makes them stays the same."""
     sources = [HERE / "bench_scenes.py", HERE / "hand_split.py", Path(nd.__file__).parent / "iced_water.py"]
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]

@@ -17,6 +17,7 @@ BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
 LABELS = {
     "naive": "naive Glass",
     "split": "hand-split Glass",
+    "passed": "Glass and hidden faces",
     "ours": "nested dielectrics",
     "ours_no_analysis": "without analysis",
     "brute": "one render a wavelength",

@@ -23,13 +23,13 @@ sys.path.insert(0, str(HERE.parent / "tests"))
 import bpy  # noqa: E402  before mathutils, which lives inside it
 import numpy as np  # noqa: E402
 from bench_scenes import BenchScene, Body, mesh_of  # noqa: E402
-from hand_split import Piece, split  # noqa: E402
+from hand_split import Piece, Split, split  # noqa: E402
 from mathutils import Matrix  # noqa: E402
 
 import nested_dielectric as nd  # noqa: E402
 from nested_dielectric.dispersion import abbe_ior  # noqa: E402
 from nested_dielectric.materials import material_table  # noqa: E402
-from scenes import add, add_camera, cycles_glass, new_scene, render  # noqa: E402
+from scenes import add, add_camera, cycles_glass, native, new_scene, render  # noqa: E402
 
 FIRST, LAST = "| Sample 0/", "| Finished"
 """What Cycles says before its first sample, when all is loaded and compiled, and after its last."""
@@ -65,7 +65,7 @@ class Worker:
     """A process that renders in one way.
 
     `way` is "naive": Cycles' Glass on overlapping bodies, each with its own index; "split": Cycles' Glass on hand-split
-    pieces; "ours": nested dielectrics; "ours_no_analysis": without what prepare() knows of the scene; "brute": Glass on
+    pieces; "passed": the same, with the surfaces that are inside a winner for a path to pass; "ours": nested dielectrics; "ours_no_analysis": without what prepare() knows of the scene; "brute": Glass on
     hand-split pieces, one render a wavelength.
     """
 
@@ -114,12 +114,12 @@ def write(stream: BinaryIO, value) -> None:
     stream.flush()
 
 
-BODIES, PIECES = "bodies.pickle", "pieces.pickle"
+BODIES, PIECES, HIDDEN = "bodies.pickle", "pieces.pickle", "hidden.pickle"
 
 
-def save(folder: Path, scene: BenchScene, pieces: Sequence[Piece]) -> None:
+def save(folder: Path, scene: BenchScene, split_up: Split) -> None:
     """Write what :meth:`Worker.build` needs: no way is to hold the other's meshes."""
-    for name, parts in ((BODIES, scene.bodies), (PIECES, pieces)):
+    for name, parts in ((BODIES, scene.bodies), (PIECES, split_up.pieces), (HIDDEN, split_up.hidden)):
         (folder / name).write_bytes(pickle.dumps((scene.view, scene.environment, parts)))
 
 
@@ -149,7 +149,8 @@ class State:
         self.glass: list[bpy.types.Material] = []
 
     def build(self, folder: Path, resolution: int) -> Built:
-        view, environment, parts = pickle.loads((folder / (PIECES if self.way == "split" else BODIES)).read_bytes())
+        glass = self.way in ("split", "passed")
+        view, environment, parts = pickle.loads((folder / (PIECES if glass else BODIES)).read_bytes())
         scene = new_scene(resolution)
         set_sky(environment)
         add_camera(view.location, view.target, angle=view.angle_degrees)
@@ -157,10 +158,12 @@ class State:
             add_bodies(parts, nested)
         elif self.way == "naive":
             add_bodies(parts, lambda body: cycles_glass(body.ior))
-        elif self.way == "split":
+        elif glass:
             add_pieces(parts)
         else:
-            self.bodies, self.glass = parts, add_pieces(split(parts))
+            self.bodies, self.glass = parts, add_pieces(split(parts).pieces)
+        if self.way == "passed":
+            add_hidden(pickle.loads((folder / HIDDEN).read_bytes())[-1])
         scene.render.use_persistent_data = True
         start = now()
         if self.way.startswith("ours"):
@@ -203,7 +206,7 @@ class State:
         picture = 0.0
         for place, wavelength in enumerate(rows[:, 3]):
             bodies = [coloured(body, wavelength) for body in self.bodies]
-            for material, piece in zip(self.glass, split(bodies), strict=True):
+            for material, piece in zip(self.glass, split(bodies).pieces, strict=True):
                 material.node_tree.nodes["Glass BSDF"].inputs["IOR"].default_value = piece.ior_ratio
             picture = picture + draw(samples // count, 1000 * seed + place) * weights[place]
         return picture
@@ -286,10 +289,22 @@ def add_pieces(pieces: Sequence[Piece]) -> list[bpy.types.Material]:
     for piece in pieces:
         if piece.ior_ratio not in materials:
             materials[piece.ior_ratio] = cycles_glass(piece.ior_ratio)
-        mesh = mesh_of(piece.name, piece.vertices, piece.triangles)
-        mesh.materials.append(materials[piece.ior_ratio])
-        add(piece.name, mesh)
+        add_piece(piece, materials[piece.ior_ratio])
     return [materials[piece.ior_ratio] for piece in pieces]
+
+
+def add_hidden(pieces: Sequence[Piece]) -> None:
+    """Objects of pieces that let everything through."""
+    clear = native("Clear", "ShaderNodeBsdfTransparent")
+    for piece in pieces:
+        add_piece(piece, clear)
+
+
+def add_piece(piece: Piece, material: bpy.types.Material) -> None:
+    """An object of a piece."""
+    mesh = mesh_of(piece.name, piece.vertices, piece.triangles)
+    mesh.materials.append(material)
+    add(piece.name, mesh)
 
 
 def set_sky(environment: np.ndarray) -> None:

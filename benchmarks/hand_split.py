@@ -39,6 +39,13 @@ class Piece(NamedTuple):
     ior_ratio: float
 
 
+class Split(NamedTuple):
+    """All interfaces of some bodies, and the parts of their surfaces that lie inside a body that wins there."""
+
+    pieces: list[Piece]
+    hidden: list[Piece]
+
+
 @dataclass(frozen=True, eq=False)
 class Surface:
     """A closed surface, (n, 3) vertices and (m, 3) triangles, and which of its triangles are its own, (m,) bool."""
@@ -88,19 +95,20 @@ def media(bodies: Iterable[Body]) -> list[Medium]:
     return found
 
 
-def split(bodies: Sequence[Body]) -> list[Piece]:
+def split(bodies: Sequence[Body]) -> Split:
     """Every interface between the media of some bodies, and between them and air."""
     order = media(bodies)
-    pieces = []
+    pieces, hidden = [], []
     for place, medium in enumerate(order):
         rest = medium.surface
         for stronger in order[:place]:
-            rest = parted(rest, stronger)[1]
+            lost, rest = parted(rest, stronger)
+            hidden.append(piece(medium, lost, stronger.name, stronger.ior))
         for weaker in order[place + 1 :]:
             inside, rest = parted(rest, weaker)
             pieces.append(piece(medium, inside, weaker.name, weaker.ior))
         pieces.append(piece(medium, rest, "air", AIR))
-    return [found for found in pieces if len(found.triangles)]
+    return Split(*([part for part in parts if len(part.triangles)] for parts in (pieces, hidden)))
 
 
 def piece(medium: Medium, surface: Surface, outside: str, ior: float) -> Piece:
@@ -267,10 +275,11 @@ def main() -> None:
     for name, make in SCENES.items():
         bpy.ops.wm.read_factory_settings(use_empty=True)
         scene = make()
-        pieces = split(scene.bodies)
+        pieces, hidden = split(scene.bodies)
         print(f"{name}: {len(pieces)} pieces, {sum(len(piece.triangles) for piece in pieces)} triangles")
         for piece in pieces:
             print(f"  {piece.name}: {len(piece.triangles)} triangles, ratio {piece.ior_ratio:.4f}")
+        print(f"  {sum(len(piece.triangles) for piece in hidden)} triangles are hidden")
         print(f"  points of another ratio: {wrong_points(scene.bodies, pieces) or 'none'}")
         print(f"  open by at most {max(openness(pieces).values()):.1e} of the area")
 
