@@ -71,6 +71,8 @@ the hull of any coarser one.
 """
 
 CLEAR = (1.0, 1.0, 1.0, 1.0)
+HIGHEST_LEVEL = 2.0**17
+"""Of an object's own; single precision keeps it and all that stands beside it."""
 
 
 @dataclass(frozen=True)
@@ -147,7 +149,8 @@ def clear_analysis(scene: bpy.types.Scene) -> None:
     scene.pop(ANALYSED, None)
     for obj in bpy.data.objects:
         _tell_object(obj, None)
-        _tell_faces(obj, None)
+        if obj.type == "MESH" and obj.mode == "OBJECT":
+            _tell_faces(obj.data, None)
     for material in bpy.data.materials:
         if dielectric_node(material) is not None:
             _tell_material(material, Outside())
@@ -629,10 +632,9 @@ def _is_same_in_renders(modifier: bpy.types.Modifier) -> bool:
 
 
 def _wants_faces(obj: bpy.types.Object) -> bool:
-    """Whether the faces of the mesh are those of the render, and no other object's."""
+    """Whether the faces of the mesh are those of the render."""
     return (
-        obj.data.users == 1
-        and obj.data.library is None
+        obj.data.library is None
         and obj.data.shape_keys is None
         and all(modifier.type == "NODES" for modifier in obj.modifiers)
     )
@@ -643,7 +645,7 @@ def _wants_faces(obj: bpy.types.Object) -> bool:
 
 @dataclass(frozen=True)
 class _Told:
-    """What an object is told, and its polygons if they differ."""
+    """What an object is told; int8 codes of its faces if they differ."""
 
     outside: Outside
     faces: np.ndarray | None = None
@@ -651,7 +653,6 @@ class _Told:
 
 def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
     """What each medium is told: what holds for all of its instances."""
-    told: dict[bpy.types.Object, _Told] = {}
     doubtful = bool(survey.doubts) or any(row.doubt for row in survey.rows if row.medium)
     boxes = np.array([row.box for row in survey.bodies]).reshape(-1, 2, 3)
     foreign = _meets(boxes, [row.box for row in survey.rows if not row.medium])
@@ -659,19 +660,40 @@ def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
     priorities = np.array([row.body.priority for row in survey.bodies])
     foreign = np.isin(priorities, priorities[foreign])
     near_vague = _meets(boxes, [row.box for row in survey.vague])
+    told: dict[bpy.types.Object, list[_Told]] = {}
     for index, (row, contact) in enumerate(zip(survey.bodies, survey.contacts)):
         if doubtful or near_vague[index]:
             one = _Told(Outside(overlaps_itself=contact.robust))
         else:
             one = _told(survey, row, contact, bool(foreign[[index, *contact.partners]].any()))
-        if row.obj in told:
-            merged = told[row.obj].outside.merged(one.outside)
-            one = _Told(merged or Outside(overlaps_itself=contact.robust))
-        told[row.obj] = one
+        told.setdefault(row.obj, []).append(one)
     for row in survey.rows:
         if row.medium and (row.body is None or row.obj in survey.elsewhere):
-            told[row.obj] = _Told(Outside())
-    return told
+            told[row.obj] = [_Told(Outside())]
+    return _merged(told)
+
+
+def _merged(told: dict[bpy.types.Object, list[_Told]]) -> dict[bpy.types.Object, _Told]:
+    """What holds for all instances of an object, and of the faces of a mesh for all of its users."""
+    faces: dict[bpy.types.Mesh, np.ndarray] = {}
+    users: dict[bpy.types.Mesh, int] = {}
+    for obj, rows in told.items():
+        users[obj.data] = users.get(obj.data, 0) + 1
+        for codes in (row.faces for row in rows if row.faces is not None):
+            before = faces.get(obj.data, codes)
+            faces[obj.data] = np.where(before == codes, codes, PROBE)
+    faces = {
+        mesh: _by_polygon(mesh, codes)
+        for mesh, codes in faces.items()
+        if users[mesh] == mesh.users - mesh.use_fake_user and codes.any()
+    }
+    result = {}
+    for obj, rows in told.items():
+        outside = _common(row.outside for row in rows)
+        if outside is None or (outside.code == FACES and obj.data not in faces):
+            outside = Outside(overlaps_itself=any(row.outside.overlaps_itself for row in rows))
+        result[obj] = _Told(outside, faces.get(obj.data))
+    return result
 
 
 def _meets(boxes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
@@ -694,7 +716,7 @@ def _told(survey: _Survey, row: _Row, contact: Contact, foreign: bool) -> _Told:
         else:
             ior, transmittance, depth = around.medium
             outside = replace(outside, medium=(float(around.priority), ior, depth), transmittance=transmittance)
-    return _Told(outside, None if faces is None else _by_polygon(row.obj.data, faces))
+    return _Told(outside, faces)
 
 
 def _by_polygon(mesh: bpy.types.Mesh, triangles: np.ndarray) -> np.ndarray:
@@ -727,7 +749,11 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
         _tell_material(material, common or Outside(BY_OBJECT))
         for obj in objects:
             _tell_object(obj, None if common else told[obj].outside)
-            _tell_faces(obj, told[obj].faces)
+    # In other modes than Object Mode a mesh belongs to the mode's tool.
+    busy = {obj.data for obj in told if obj.mode != "OBJECT"}
+    for mesh, faces in {obj.data: one.faces for obj, one in told.items()}.items():
+        if isinstance(mesh, bpy.types.Mesh) and mesh not in busy:
+            _tell_faces(mesh, faces)
 
 
 def _common(outsides: Iterable[Outside]) -> Outside | None:
@@ -758,16 +784,13 @@ def _tell_material(material: bpy.types.Material, outside: Outside) -> None:
 
 
 def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
-    """Write an object's custom properties, or with None remove them. Zeros tell nothing, as in osl/outside.h."""
+    """Write an object's custom properties, or with None remove them."""
     if obj.library is not None:
         return
-    values: tuple = (None, None, None)
+    values: tuple = (None, None)
     if outside is not None:
-        values = (
-            (float(outside.code), outside.level + 1.0, float(outside.overlaps_itself), float(not outside.foreign)),
-            (*outside.medium, 0.0),
-            tuple(outside.transmittance),
-        )
+        absorbs = outside.transmittance != CLEAR
+        values = ((_facts_in_one(outside), *outside.medium), outside.transmittance if absorbs else None)
     for name, value in zip(OBJECT_PROPERTIES, values):
         before = obj.get(name)
         if value is None:
@@ -779,24 +802,35 @@ def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
             obj.update_tag()
 
 
-def _tell_faces(obj: bpy.types.Object, faces: np.ndarray | None) -> None:
+def _facts_in_one(outside: Outside) -> float:
+    """The number of which osl/outside.h reads the digits; 0 tells nothing."""
+    level = int(outside.level) + 1 if outside.level <= HIGHEST_LEVEL else 0
+    return float(
+        outside.code
+        + 8 * outside.overlaps_itself
+        + 16 * (not outside.foreign)
+        + 32 * (outside.transmittance != CLEAR)
+        + 64 * level
+    )
+
+
+def _tell_faces(mesh: bpy.types.Mesh, faces: np.ndarray | None) -> None:
     """Write the attribute of a mesh's faces, or with None remove it."""
-    if obj.type != "MESH" or obj.data.library is not None or obj.mode != "OBJECT":
+    if mesh.library is not None:
         return
-    attributes = obj.data.attributes
-    attribute = attributes.get(FACE_ATTRIBUTE)
+    attribute = mesh.attributes.get(FACE_ATTRIBUTE)
     if faces is None:
         if attribute is not None:
-            attributes.remove(attribute)
-            obj.data.update_tag()
+            mesh.attributes.remove(attribute)
+            mesh.update_tag()
         return
     if attribute is None:
-        attribute = attributes.new(FACE_ATTRIBUTE, "INT8", "FACE")
+        attribute = mesh.attributes.new(FACE_ATTRIBUTE, "INT8", "FACE")
     before = np.empty(len(faces), dtype=np.int8)
     attribute.data.foreach_get("value", before)
     if not np.array_equal(before, faces):
         attribute.data.foreach_set("value", faces)
-        obj.data.update_tag()
+        mesh.update_tag()
 
 
 def _found(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> Found:

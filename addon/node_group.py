@@ -53,7 +53,7 @@ BY_OBJECT = 5
 FACE_ATTRIBUTE = "nd_outside"
 OFFSET_GROUP = "Nested Dielectric Offset"
 NEIGHBOUR_VALUES = ("IOR", "Transmittance", "Transmittance Depth")
-OBJECT_PROPERTIES = ("nd_outside", "nd_surroundings", "nd_surroundings_transmittance")
+OBJECT_PROPERTIES = ("nd_outside", "nd_outside_transmittance")
 """Where faces and objects keep what a scene's analysis tells of them, four floats to an object's property."""
 
 TABLE_SOCKET = "Spectral Table"
@@ -328,12 +328,11 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     for name in (EMITTER_OUTPUT, LAMPS_OUTPUT):
         links.new(lights.outputs[name], script.inputs[name])
 
-    # Not an emitter: Cycles would take every glass for a lamp and spend light samples on it.
     alarm = nodes.new("ShaderNodeBsdfDiffuse")
     alarm.inputs["Color"].default_value = (1.0, 0.0, 1.0, 1.0)
     links.new(nodes.new("ShaderNodeBsdfRayPortal").outputs[0], script.inputs["CountsPortals"])
     running = _mix(tree, script.outputs["Running"], alarm.outputs[0], script.outputs["BSDF"])
-    running.label = "Magenta where OSL or its ray tracing does not run"
+    running.label = "Magenta where OSL does not run"
     links.new(running.outputs[0], outputs.inputs[CYCLES_OUTPUT])
 
     links.new(_absorption(tree, coefficients, absorbs), outputs.inputs[VOLUME_OUTPUT])
@@ -543,9 +542,9 @@ def _requests(
         "Dispersion Model": math("MAXIMUM", curve["Sellmeier B"], curve["Dispersion"]),
     }
     names = [
-        (PRIORITY_PROPERTY, "OBJECT", None),
-        (FACE_ATTRIBUTE, "GEOMETRY", math("GREATER_THAN", outside, FACES - 0.5)),
         *((name, "OBJECT", by_object) for name in OBJECT_PROPERTIES),
+        (FACE_ATTRIBUTE, "GEOMETRY", math("GREATER_THAN", outside, FACES - 0.5)),
+        (PRIORITY_PROPERTY, "OBJECT", None),
         ("material_slots[1].material.pass_index", "OBJECT", None),
         ("material_index", "GEOMETRY", None),
     ]

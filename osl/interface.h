@@ -9,7 +9,8 @@ struct Interface {
   Medium to;    /* on the other side */
   int from_holders; /* objects of that medium's priority around the point */
   int to_holders;
-  int traced;   /* 0 where Cycles cannot trace rays from shaders, or a spot check finds the analysis wrong */
+  int traced;   /* 0 where Cycles cannot trace rays from shaders */
+  int mistold;  /* a spot check finds the analysis wrong */
 };
 
 /* Schmidt and Budge, 2002 (Simple nested dielectrics in ray traced images), without their per-ray interface list: what
@@ -29,14 +30,13 @@ Interface resolve_interface(Medium own, Outside told, int always_air, int looks_
   Interface s;
   s.valid = 1;
   s.traced = 1;
+  s.mistold = 0;
   /* The way through a medium that absorbs ends where another wins, so its priority counts even alone. */
   int known = looks_ahead && absorbs(own);
   if (known)
     inner.priority = shaded_priority(own.priority);
-  if (always_air) {
-    if (spot_check() && lies_in_a_medium(P, away, s.traced) && lies_in_a_medium(P, askew(away), s.traced))
-      s.traced = 0;
-  }
+  if (always_air)
+    s.mistold = spot_check() && lies_in_a_medium(P, away, s.traced) && lies_in_a_medium(P, askew(away), s.traced);
   else {
     int outside = told_outside(told);
     /* Light of one wavelength needs the medium's whole curve, and a look ahead all that holds the point. */
@@ -65,7 +65,7 @@ Interface resolve_interface(Medium own, Outside told, int always_air, int looks_
       else if (agrees(s.valid, outer, found))
         checks = 0;
       else
-        s.traced = found.traced && i == 1; /* twice is no rounding */
+        s.mistold = i == 2; /* twice is no rounding */
     }
   }
   if (backfacing()) {

@@ -10,8 +10,10 @@
 #define OUTSIDE_BY_FACE 4   /* an attribute of each face tells */
 #define OUTSIDE_BY_OBJECT 5 /* the object's own properties tell */
 
-/* One in so many surfaces that the analysis tells of is asked all the same. */
-#define SPOT_CHECKS 64.0
+/* One in so many surfaces that the analysis tells of is asked all the same. Where the scene answers otherwise the surface
+ * is so many times as bright as a white one, or few samples would hide it. */
+#define SPOT_CHECKS 512.0
+#define ALARM 64.0
 
 struct Outside {
   int outside;
@@ -32,24 +34,23 @@ Medium plain_medium(float priority, float ior, color transmittance, float transm
   return m;
 }
 
-/* What the object's own custom properties tell. One without them reads zeros, which tell nothing: the level counts from
- * 1, and the last number tells that nothing foreign is near. */
+/* What the object's own custom properties tell. The first number holds, from its lowest digit on: what lies outside,
+ * whether the object overlaps itself, whether nothing foreign is near, whether the medium absorbs, and the level counted
+ * from 1. An object without the properties reads zeros, which tell nothing. */
 Outside told_by_object()
 {
-  float object[4] = {OUTSIDE_UNKNOWN, 0.0, 0.0, 0.0};
-  float medium[4] = {0.0, 1.0, 0.0, 0.0};
+  float object[4] = {OUTSIDE_UNKNOWN, 0.0, 1.0, 0.0}; /* then the medium's priority, IOR and Transmittance Depth */
   float left[4] = {1.0, 1.0, 1.0, 1.0};
   getattribute("\001object:nd_outside", object);
-  if (object[0] == OUTSIDE_MEDIUM || object[0] == OUTSIDE_BY_FACE) {
-    getattribute("\001object:nd_surroundings", medium);
-    getattribute("\001object:nd_surroundings_transmittance", left);
-  }
+  int facts = (int)object[0];
+  if (facts & 32)
+    getattribute("\001object:nd_outside_transmittance", left);
   Outside told;
-  told.outside = (int)object[0];
-  told.level = object[1] - 1.0;
-  told.overlaps_itself = object[2] > 0.0;
-  told.foreign = object[3] == 0.0;
-  told.medium = plain_medium(medium[0], medium[1], color(left[0], left[1], left[2]), medium[2]);
+  told.outside = facts & 7;
+  told.overlaps_itself = (facts & 8) != 0;
+  told.foreign = (facts & 16) == 0;
+  told.level = (facts >> 6) - 1;
+  told.medium = plain_medium(object[1], object[2], color(left[0], left[1], left[2]), object[3]);
   return told;
 }
 

@@ -42,6 +42,10 @@ TOLD = (
 """Sockets of a material that an analysis writes."""
 
 SAMPLES = 16
+ALARM_SAMPLES = 16 * SAMPLES
+"""So many that some of a few hundred pixels are checked."""
+
+UNTOLD = (None,) * len(OBJECT_PROPERTIES)
 TINT = {"transmittance": (0.9, 0.6, 0.4), "transmittance_depth": 0.5}
 GREY = {"transmittance": (0.7, 0.7, 0.7), "transmittance_depth": 0.5}
 
@@ -116,7 +120,7 @@ def told_by_faces(obj: bpy.types.Object) -> tuple | None:
 
 def told_code(obj: bpy.types.Object) -> int:
     """What the shader takes for the object's code; of several materials the one that is told most."""
-    own = int(obj[OBJECT_PROPERTIES[0]][0]) if OBJECT_PROPERTIES[0] in obj else PROBE
+    own = int(obj[OBJECT_PROPERTIES[0]][0]) % 8 if OBJECT_PROPERTIES[0] in obj else PROBE
     by_material = [inputs(material)["Outside"].default_value for material in media_of(obj)]
     return max(own if code == BY_OBJECT else code for code in by_material)
 
@@ -129,7 +133,7 @@ def told_foreign(obj: bpy.types.Object) -> bool:
     """Whether the shader looks out for foreign objects."""
     sockets = inputs(obj.active_material)
     if sockets["Outside"].default_value == BY_OBJECT:
-        return OBJECT_PROPERTIES[0] not in obj or obj[OBJECT_PROPERTIES[0]][3] == 0.0
+        return OBJECT_PROPERTIES[0] not in obj or int(obj[OBJECT_PROPERTIES[0]][0]) // 16 % 2 == 0
     return sockets["Foreign Objects"].default_value
 
 
@@ -395,7 +399,7 @@ def test_an_object_that_is_told_nothing_by_itself_asks_all():
     nd.analyse(scene)
     assert inputs(glass)["Outside"].default_value == BY_OBJECT
     for name in OBJECT_PROPERTIES:
-        crossing.pop(name)
+        crossing.pop(name, None)
     crossing.update_tag()
     assert_same_answers(render(SAMPLES), asked)
 
@@ -432,7 +436,7 @@ def test_a_medium_alone_is_told_of_air_through_its_material():
     assert sockets["Outside Priority"].default_value < 0.0
     assert not sockets["Overlaps Itself"].default_value
     assert not sockets["Foreign Objects"].default_value
-    assert told_by_object(bead) == (None, None, None) and told_by_faces(bead) is None
+    assert told_by_object(bead) == UNTOLD and told_by_faces(bead) is None
     assert (found.known, found.partly, found.asking, found.doubts) == (("Ball",), (), (), ())
 
 
@@ -470,12 +474,27 @@ def test_objects_of_one_material_are_told_each_for_itself_where_their_surroundin
     inside, outside = ball("Inside", 0.5, glass, 1), ball("Outside", 0.5, glass, 2, (3, 0, 0))
     nd.analyse(scene)
     assert inputs(glass)["Outside"].default_value == BY_OBJECT == 5
-    assert told_by_object(inside) == ((MEDIUM, 0.0, 0.0, 1.0), (5.0, 1.33, 1.0, 0.0), (1.0,) * 4)
-    assert told_by_object(outside)[0] == (AIR, 0.0, 0.0, 1.0)
+    assert told_by_object(inside) == ((MEDIUM + 16, 5.0, 1.33, 1.0), None)
+    assert told_by_object(outside) == ((AIR + 16, 0.0, 1.0, 0.0), None)
     inside.location.x = 30.0
     nd.analyse(scene)
     assert inputs(glass)["Outside"].default_value == AIR
-    assert told_by_object(inside) == told_by_object(outside) == (None, None, None)
+    assert told_by_object(inside) == told_by_object(outside) == UNTOLD
+
+
+def test_objects_of_one_material_are_told_of_media_that_absorb():
+    scene = stage()
+    glass = medium("Glass", 1.5, shadow_mode="BLACK")
+    grey = {"transmittance": (0.5, 0.25, 1.0), "transmittance_depth": 2.0}
+    ball("Wine", 0.8, medium("Wine", 1.33, **grey, shadow_mode="BLACK"), 5, (0.0, 0.0, -0.3))
+    inside = ball("Inside", 0.4, glass, 1, (0.0, 0.0, -0.3))
+    ball("Outside", 0.3, glass, 2, (0.0, 0.0, 0.9))
+    crossing = ball("Crossing", 0.3, glass, 3, (-0.8, 0.1, -0.3))
+    asked, told = asked_and_told(scene)
+    around = (5.0, 1.33, 2.0)
+    assert told_by_object(inside) == ((MEDIUM + 16 + 32, *around), (0.5, 0.25, 1.0, 1.0))
+    assert told_by_object(crossing) == ((FACES + 16 + 32 + 64 * 6, *around), (0.5, 0.25, 1.0, 1.0))
+    assert_same_answers(told, asked)
 
 
 def test_a_medium_that_changes_or_disperses_is_asked_for_its_values():
@@ -524,18 +543,39 @@ def test_faces_are_told_apart_where_surfaces_cross():
                 assert corner_depths.max() < 1.0
 
 
-def test_a_mesh_of_two_objects_and_one_with_modifiers_are_not_told_by_faces():
-    scene = fresh()
+def test_a_mesh_of_several_objects_is_told_by_faces_what_holds_for_all():
+    scene = stage(24)
     glass = medium("Glass", 1.5)
-    bead = ball("Ball", 1.0, glass, 1)
+    bead = ball("Ball", 0.6, glass, 1, (-0.7, 0.0, 0.3))
+    ball("Beside", 0.6, medium("Beside", 1.33), 0, (-0.1, 0.1, 0.5))
+    nd.analyse(scene)
+    first = np.array(told_by_faces(bead))
+    twin = add("Twin", bead.data, (0.6, 0.0, -0.5))
+    nd.set_priority(twin, 1)
+    ball("Below", 0.6, medium("Below", 1.2), 0, (0.7, 0.3, -1.1))
+    alone = add("Alone", bead.data, (30.0, 0.0, 0.0))
+    asked, told = asked_and_told(scene)
+    assert (told_code(bead), told_code(twin), told_code(alone)) == (FACES, FACES, AIR)
+    both = np.array(told_by_faces(bead))
+    for code in (AIR, NEVER):
+        assert 0 < (both == code).sum() < (first == code).sum()
+    assert ((both == first) | (both == PROBE)).all()
+    assert_same_answers(told, asked)
+
+
+def test_a_mesh_with_modifiers_or_other_users_is_not_told_by_faces():
+    scene = fresh()
+    bead = ball("Ball", 1.0, medium("Glass", 1.5), 1)
     ball("Other", 1.0, medium("Other", 1.33), 2, (1.1, 0.1, 0.2))
     nd.analyse(scene)
     assert told_code(bead) == FACES
-    twin = add("Twin", bead.data, (30.0, 0.0, 0.0))
-    nd.set_priority(twin, 1)
+    elsewhere = bpy.data.objects.new("In no scene", bead.data)
     nd.analyse(scene)
-    assert (told_code(bead), told_code(twin), told_by_faces(bead)) == (PROBE, AIR, None)
-    bpy.data.objects.remove(twin)
+    assert (told_code(bead), told_by_faces(bead)) == (PROBE, None)
+    bpy.data.objects.remove(elsewhere)
+    bead.data.use_fake_user = True
+    nd.analyse(scene)
+    assert told_code(bead) == FACES
     bead.modifiers.new("Bevel", "BEVEL")
     nd.analyse(scene)
     assert (told_code(bead), told_by_faces(bead)) == (PROBE, None)
@@ -994,7 +1034,7 @@ def test_a_medium_that_may_be_anywhere_leaves_all_to_rays(doubtful):
         assert sockets["Outside Priority"].default_value < 0.0
         assert sockets["Foreign Objects"].default_value
     for obj in bpy.data.objects:
-        assert told_by_object(obj) == (None, None, None)
+        assert told_by_object(obj) == UNTOLD
     assert told_by_faces(bpy.data.objects["Water"]) is told_by_faces(bpy.data.objects["Crossing"]) is None
 
 
@@ -1369,8 +1409,8 @@ def stale_shapes() -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
 
     def tell_wrongly() -> None:
         values = list(wrong[OBJECT_PROPERTIES[0]])
-        assert values[0] == MEDIUM
-        wrong[OBJECT_PROPERTIES[0]] = [float(AIR), *values[1:]]
+        assert values[0] % 8 == MEDIUM
+        wrong[OBJECT_PROPERTIES[0]] = [values[0] - MEDIUM + AIR, *values[1:]]
         wrong.update_tag()
 
     changes["what it is told by itself is wrong"] = tell_wrongly
@@ -1378,11 +1418,11 @@ def stale_shapes() -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
     assert not nd.analyse(cells.scene).doubts
     for name in SHAPES:
         changes[name]()
-    stale = render(SAMPLES)
+    stale = render(ALARM_SAMPLES)
     nd.analyse(cells.scene)
-    told = render(SAMPLES)
+    told = render(ALARM_SAMPLES)
     nd.clear_analysis(cells.scene)
-    pictures = [cells.cut(picture) for picture in (stale, told, render(SAMPLES))]
+    pictures = [cells.cut(picture) for picture in (stale, told, render(ALARM_SAMPLES))]
     return {name: tuple(picture[name] for picture in pictures) for name in SHAPES}
 
 
@@ -1415,7 +1455,7 @@ def stale_values() -> dict[str, np.ndarray]:
     ):
         inputs(bpy.data.materials[name])[socket].default_value = value
     foreign.location = cells.place("something foreign comes in", 0.0, 0.0, 0.0)
-    return cells.cut(render(SAMPLES))
+    return cells.cut(render(ALARM_SAMPLES))
 
 
 @pytest.mark.parametrize("change", VALUES)
