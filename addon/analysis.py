@@ -26,11 +26,13 @@ from .node_group import (
     FACE_ATTRIBUTE,
     FOREIGN_SOCKET,
     LEVEL_SOCKET,
+    MATERIAL_SLOTS,
     NEIGHBOUR_VALUES,
     OBJECT_PROPERTIES,
     OFFSET_GROUP,
     OUTSIDE_SOCKET,
     OVERLAP_SOCKET,
+    SLOTS_SOCKET,
     SURROUNDINGS_COLOR_SOCKET,
     SURROUNDINGS_SOCKET,
     has_analysis,
@@ -737,8 +739,9 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
     for obj in told:
         for material in {slot.material for slot in obj.material_slots} & survey.facts.keys():
             users.setdefault(material, []).append(obj)
+    slots = _most_slots()
     for material in survey.facts.keys() - users.keys():
-        _tell_material(material, Outside())
+        _tell_material(material, Outside(), slots.get(material))
     others = {slot.material for obj in survey.elsewhere - told.keys() for slot in obj.material_slots}
     for material, objects in users.items():
         if not survey.facts[material].can_be_told:
@@ -746,7 +749,7 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
         common = _common(told[obj].outside for obj in objects)
         if material in others and common is not None:
             common = Outside(overlaps_itself=common.overlaps_itself) if common.code == PROBE else None
-        _tell_material(material, common or Outside(BY_OBJECT))
+        _tell_material(material, common or Outside(BY_OBJECT), slots.get(material))
         for obj in objects:
             _tell_object(obj, None if common else told[obj].outside)
     # In other modes than Object Mode a mesh belongs to the mode's tool.
@@ -764,7 +767,19 @@ def _common(outsides: Iterable[Outside]) -> Outside | None:
     return first
 
 
-def _tell_material(material: bpy.types.Material, outside: Outside) -> None:
+def _most_slots() -> dict[bpy.types.Material, int]:
+    """Of all objects of each material; many where modifiers may make more."""
+    most: dict[bpy.types.Material, int] = {}
+    for obj in bpy.data.objects:
+        count = len(obj.material_slots)
+        if any(modifier.type == "NODES" and not is_offset(modifier) for modifier in obj.modifiers):
+            count = MATERIAL_SLOTS
+        for slot in obj.material_slots:
+            most[slot.material] = max(most.get(slot.material, 0), count)
+    return most
+
+
+def _tell_material(material: bpy.types.Material, outside: Outside, slots: int | None = None) -> None:
     node = dielectric_node(material)
     if material.library is not None or not has_analysis(node):
         return
@@ -775,6 +790,7 @@ def _tell_material(material: bpy.types.Material, outside: Outside) -> None:
         FOREIGN_SOCKET: outside.foreign,
         SURROUNDINGS_SOCKET: outside.medium,
         SURROUNDINGS_COLOR_SOCKET: outside.transmittance,
+        SLOTS_SOCKET: 1 if slots == 1 else MATERIAL_SLOTS,
     }
     for name, value in values.items():
         socket = node.inputs[name]

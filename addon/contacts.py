@@ -355,7 +355,7 @@ def _face_codes(
             near = np.zeros(count, dtype=bool)
             touching = [side.touching for _, side in members if len(side.touching)]
             if touching:
-                near = _with_neighbours(place, np.concatenate(touching))
+                near[np.concatenate(touching)] = True
             claims += near | (inside > 0)
             which[inside > 0] = len(names)
             names.append(members[0][0])
@@ -377,14 +377,6 @@ def _face_codes(
         doubted |= unsure
     codes[~decided & doubted] = PROBE
     return codes, names, (medium, holders)
-
-
-def _with_neighbours(place: _Placed, faces: np.ndarray) -> np.ndarray:
-    """(m,) whether triangles share a vertex with some of the given ones."""
-    marked = np.zeros(place.vertices.shape[1], dtype=bool)
-    marked[place.corners[:, faces]] = True
-    a, b, c = place.corners
-    return marked[a] | marked[b] | marked[c]
 
 
 def _with_levels(

@@ -47,6 +47,7 @@ OVERLAP_SOCKET = "Overlaps Itself"
 FOREIGN_SOCKET = "Foreign Objects"
 SURROUNDINGS_SOCKET = "Surroundings"
 SURROUNDINGS_COLOR_SOCKET = "Surroundings Transmittance"
+SLOTS_SOCKET = "Material Slots"
 BY_OBJECT = 5
 """As in osl/outside.h, beside the codes of :mod:`contacts`: each object has its own."""
 
@@ -104,8 +105,16 @@ _ANALYSIS_SOCKETS = {
         (1.0, 1.0, 1.0, 1.0),
         "Transmittance of the medium outside",
     ),
+    SLOTS_SOCKET: (
+        "",
+        "INT",
+        MATERIAL_SLOTS,
+        "Slots of an object in which others may find the material: 1 where all of its objects have no more",
+    ),
 }
-"""The shader's name, kind, default and description of what an analysis tells all objects of a material."""
+"""The shader's name (empty where it reads none), kind, default and description of what an analysis tells all objects of a
+material.
+"""
 
 
 def ensure_group() -> bpy.types.NodeTree:
@@ -285,7 +294,8 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     kinds = {
         parameter.osl_name: "INT" if parameter.kind in ("MENU", "BOOL") else parameter.kind for parameter in SOCKETS
     }
-    kinds |= {osl_name: "INT" if kind == "BOOL" else kind for osl_name, kind, *_ in _ANALYSIS_SOCKETS.values()}
+    told = {osl_name: (name, kind) for name, (osl_name, kind, *_) in _ANALYSIS_SOCKETS.items() if osl_name}
+    kinds |= {osl_name: "INT" if kind == "BOOL" else kind for osl_name, (_, kind) in told.items()}
     kinds |= {
         "Requests": "COLOR",
         "CountsPortals": "SHADER",
@@ -307,7 +317,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         if parameter.kind == "MENU":
             source = _menu(tree, source, parameter)
         links.new(source, script.inputs[parameter.osl_name])
-    for name, (osl_name, *_) in _ANALYSIS_SOCKETS.items():
+    for osl_name, (name, _) in told.items():
         links.new(inputs.outputs[name], script.inputs[osl_name])
     spectral = _view_layer_attribute(tree, "render.use_motion_blur").outputs["Fac"]
     coefficients, absorbs = _absorption_coefficients(tree, inputs)
@@ -522,7 +532,8 @@ def _requests(
     """One colour that depends on every attribute neighbours read of an object, so that Cycles exports them.
 
     Cycles looks attributes up one by one in the order of these nodes, and what is not there takes longest: so the
-    list is kept short. What a material does not have is multiplied by a constant 0, and Cycles drops it.
+    list is kept short. What a material does not have, or has in no further slot, is multiplied by a constant 0, and Cycles
+    drops it.
     """
     math = partial(_math, tree)
     model = inputs.outputs["Dispersion Model"]
@@ -546,13 +557,15 @@ def _requests(
         (FACE_ATTRIBUTE, "GEOMETRY", math("GREATER_THAN", outside, FACES - 0.5)),
         (PRIORITY_PROPERTY, "OBJECT", None),
         ("material_slots[1].material.pass_index", "OBJECT", None),
-        ("material_index", "GEOMETRY", None),
     ]
+    several = math("GREATER_THAN", inputs.outputs[SLOTS_SOCKET], 1.5)
+    names.append(("material_index", "GEOMETRY", several))
+    in_others = {name: math("MULTIPLY", several, condition) for name, condition in conditions.items()}
     names += [
         (
             f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value',
             "OBJECT",
-            conditions.get(name),
+            in_others.get(name, several) if slot else conditions.get(name),
         )
         for slot in range(MATERIAL_SLOTS)
         for name in NEIGHBOUR_PARAMETERS

@@ -32,15 +32,18 @@ Interface resolve_interface(Medium own, Outside told, int always_air, int looks_
   s.traced = 1;
   s.mistold = 0;
   /* The way through a medium that absorbs ends where another wins, so its priority counts even alone. */
-  int known = looks_ahead && absorbs(own);
+  int known = own.absorbs && looks_ahead; /* what may be constant stands first, or nothing folds away */
   if (known)
     inner.priority = shaded_priority(own.priority);
-  if (always_air)
-    s.mistold = spot_check() && lies_in_a_medium(P, away, s.traced) && lies_in_a_medium(P, askew(away), s.traced);
+  if (always_air) {
+    int traced = 1;
+    if (spot_check())
+      s.mistold = (lies_in_a_medium(P, away, traced) && lies_in_a_medium(P, askew(away), traced)) || !traced;
+  }
   else {
     int outside = told_outside(told);
     /* Light of one wavelength needs the medium's whole curve, and a look ahead all that holds the point. */
-    if (outside == OUTSIDE_MEDIUM && (spectral || (looks_ahead && absorbs(told.medium))))
+    if (outside == OUTSIDE_MEDIUM && (spectral || (looks_ahead && told.medium.absorbs)))
       outside = OUTSIDE_UNKNOWN;
     if (outside == OUTSIDE_MEDIUM)
       outer = told.medium;
@@ -55,17 +58,17 @@ Interface resolve_interface(Medium own, Outside told, int always_air, int looks_
     for (int i = unknown ? 0 : 1; i <= checks; i++) {
       Surroundings found = probe_surroundings(P, (i < 2) ? away : askew(away), inner.priority, known, i ? -1.0 : told.level,
                                               told.overlaps_itself, curves, wavelength);
-      s.traced = found.traced;
       if (i == 0) {
+        s.traced = found.traced;
         inner.priority = found.own_priority;
         outer = found.medium;
         outer_holders = found.holders;
         s.valid = inner.priority < outer.priority;
       }
-      else if (agrees(s.valid, outer, found))
+      else if (found.traced && agrees(s.valid, outer, found))
         checks = 0;
       else
-        s.mistold = i == 2; /* twice is no rounding */
+        s.mistold = i == 2 || !found.traced; /* twice is no rounding */
     }
   }
   if (backfacing()) {

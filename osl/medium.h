@@ -17,6 +17,7 @@ struct Medium {
   int disperses;
   color transmittance;       /* colour that is left after transmittance_depth */
   float transmittance_depth; /* scene units */
+  int absorbs;
 };
 
 Medium air()
@@ -30,12 +31,15 @@ Medium air()
   m.disperses = 0;
   m.transmittance = color(1.0);
   m.transmittance_depth = 1.0;
+  m.absorbs = 0;
   return m;
 }
 
-int absorbs(Medium m)
+void tint(output Medium m, color transmittance, float transmittance_depth)
 {
-  return min(m.transmittance[0], min(m.transmittance[1], m.transmittance[2])) < 1.0 && m.transmittance_depth > 0.0;
+  m.transmittance = clamp(transmittance, color(0.0), color(1.0));
+  m.transmittance_depth = transmittance_depth;
+  m.absorbs = min(m.transmittance[0], min(m.transmittance[1], m.transmittance[2])) < 1.0 && transmittance_depth > 0.0;
 }
 
 /* Cycles evaluates these RNA paths on the evaluated object, so a neighbour's keyframed or driven socket is read as it
@@ -56,8 +60,12 @@ float shaded_priority(float material_priority)
   return (own[3] > 0.0) ? own[0] : material_priority;
 }
 
-/* Any material in the second slot: an object without one needs no look at the face that was hit. */
+/* Any material in the second slot: an object without one needs no look at the face that was hit, and what its material
+ * exports is that of the first slot alone, if the scene was analysed (see _requests in addon/node_group.py). */
 #define SECOND_SLOT "\001object:material_slots[1].material.pass_index"
+#define NO_SLOT -1
+/* The object has got a second slot since the analysis: what is in it cannot be read. */
+#define UNREADABLE_SLOT -2
 
 /* The medium that was hit last by trace() is made of the nested dielectric of the face that was hit. A face with
  * another material, such as a label on a bottle, closes the object's surface all the same: it counts as the first
@@ -67,23 +75,28 @@ float hit_slot(output int slot)
   string priorities[MATERIAL_SLOTS] = SOCKETS("Priority");
   float value[4];
   float index = 0.0;
-  if (getmessage("trace", SECOND_SLOT, value) && value[3] > 0.0)
+  if (getmessage("trace", SECOND_SLOT, value) && value[3] > 0.0) {
     getmessage("trace", "material_index", index);
+    if (!getmessage("trace", priorities[1], value)) {
+      slot = UNREADABLE_SLOT;
+      return AIR_PRIORITY;
+    }
+  }
   for (int i = -1; i < MATERIAL_SLOTS; i++) {
     slot = (i < 0) ? min((int)index, MATERIAL_SLOTS - 1) : i;
     if (getmessage("trace", priorities[slot], value) && value[3] > 0.0)
       return value[0];
   }
-  slot = -1;
+  slot = NO_SLOT;
   return AIR_PRIORITY;
 }
 
 /* Priority of the medium that was hit last by trace(); AIR_PRIORITY if the object is foreign. The object's own
- * value, where it has one, overrides the material's; the slot is then not looked for yet and -1. */
+ * value, where it has one, overrides the material's; the slot is then not looked for yet and NO_SLOT. */
 float hit_priority(output int slot)
 {
   float value[4];
-  slot = -1;
+  slot = NO_SLOT;
   if (!getmessage("trace", OBJECT_PRIORITY, value))
     return AIR_PRIORITY; /* no material on it asks for the property: not a medium */
   return (value[3] > 0.0) ? value[0] : hit_slot(slot);
@@ -127,15 +140,14 @@ DispersionCurve hit_dispersion(int slot, int curves)
 }
 
 /* All of the medium that was hit last, of which hit_priority() told the priority and the slot. */
-Medium hit_medium(float priority, int known_slot, int curves, float wavelength)
+Medium hit_medium(float priority, output int slot, int curves, float wavelength)
 {
   string iors[MATERIAL_SLOTS] = SOCKETS("IOR");
   string transmittances[MATERIAL_SLOTS] = SOCKETS("Transmittance");
   string depths[MATERIAL_SLOTS] = SOCKETS("Transmittance Depth");
   Medium m = air();
   m.priority = priority;
-  int slot = known_slot;
-  if (slot < 0)
+  if (slot == NO_SLOT)
     hit_slot(slot);
   if (slot >= 0) {
     float value[4];
@@ -144,9 +156,9 @@ Medium hit_medium(float priority, int known_slot, int curves, float wavelength)
     m.ior = medium_index(value[0], d, curves != CURVES_NONE, wavelength);
     m.disperses = d.disperses;
     if (getmessage("trace", transmittances[slot], value)) {
-      m.transmittance = clamp(color(value[0], value[1], value[2]), color(0.0), color(1.0));
+      color left = color(value[0], value[1], value[2]);
       getmessage("trace", depths[slot], value);
-      m.transmittance_depth = value[0];
+      tint(m, left, value[0]);
     }
   }
   return m;

@@ -29,8 +29,7 @@ Medium plain_medium(float priority, float ior, color transmittance, float transm
   Medium m = air();
   m.priority = priority;
   m.ior.at_path = m.ior.white = usable_ior(ior);
-  m.transmittance = transmittance;
-  m.transmittance_depth = transmittance_depth;
+  tint(m, transmittance, transmittance_depth);
   return m;
 }
 

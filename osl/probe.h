@@ -41,7 +41,7 @@ struct Surroundings {
   Medium medium;      /* the winner among the other media */
   int holders;        /* objects of its priority that hold the point */
   float own_priority; /* of the surface's object; the material's while nothing asked for it */
-  int traced;         /* 0 where Cycles cannot trace rays from shaders */
+  int traced;         /* 0 where Cycles cannot trace rays from shaders, or they tell less than is needed */
 };
 
 /* The media that fill the point just off P in the given direction, P's own object left out.
@@ -82,8 +82,12 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
     getmessage("trace", "hitself", self);
     if (self > 0.0 && !overlaps_itself)
       continue;
-    int slot = -1;
+    int slot = NO_SLOT;
     float priority = hit_priority(slot);
+    if (slot == UNREADABLE_SLOT) {
+      s.traced = 0;
+      return s;
+    }
     if (priority >= AIR_PRIORITY || priority > s.medium.priority || (level >= 0.0 && priority != level))
       continue;
     if (!known) {
@@ -103,7 +107,9 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
     sum[k] += hit_crossing(direction);
     if (sum[k] > 0 && priority < s.medium.priority) {
       s.medium = hit_medium(priority, slot, curves, wavelength);
-      if (priority <= s.own_priority)
+      if (slot == UNREADABLE_SLOT)
+        s.traced = 0;
+      if (priority <= s.own_priority || !s.traced)
         return s;
     }
     if (priority == s.medium.priority)
@@ -120,8 +126,10 @@ int agrees(int valid, Medium outer, Surroundings found)
   if (!valid || found.medium.priority <= found.own_priority)
     return !valid && found.medium.priority <= found.own_priority;
   return found.medium.priority == outer.priority && abs(found.medium.ior.white - outer.ior.white) < 1e-4 &&
-         abs(found.medium.transmittance_depth - outer.transmittance_depth) <= 1e-4 * outer.transmittance_depth &&
-         length((vector)(found.medium.transmittance - outer.transmittance)) < 1e-3;
+         found.medium.absorbs == outer.absorbs &&
+         (!outer.absorbs ||
+          (abs(found.medium.transmittance_depth - outer.transmittance_depth) <= 1e-4 * outer.transmittance_depth &&
+           length((vector)(found.medium.transmittance - outer.transmittance)) < 1e-3));
 }
 
 /* Whether any medium fills the point just off P, P's own object left out; `traced` as in Surroundings. */
@@ -161,7 +169,7 @@ float medium_extent(
     float hit = 0.0;
     getmessage("trace", "hitdist", hit);
     t = step_past(hit);
-    int slot = -1;
+    int slot = NO_SLOT;
     float priority = hit_priority(slot);
     if (priority >= AIR_PRIORITY) {
       if (foreign_stops) {

@@ -227,7 +227,7 @@ def crossing() -> dict[str, int]:
     ball("Ball", 0.8, medium("Glass", 1.5), 1, (-0.5, 0.0, 0.0))
     add_box("Box", (-0.3, -0.6, -0.4), (1.1, 0.5, 0.6), medium("Water", 1.33), 2)
     ball("Rough", 0.6, medium("Rough", 1.8, roughness=0.3), 3, (0.5, -0.3, 0.5))
-    return {"Ball": FACES, "Box": PROBE, "Rough": FACES}
+    return {"Ball": FACES, "Box": FACES, "Rough": FACES}
 
 
 def fused() -> dict[str, int]:
@@ -495,6 +495,31 @@ def test_objects_of_one_material_are_told_of_media_that_absorb():
     assert told_by_object(inside) == ((MEDIUM + 16 + 32, *around), (0.5, 0.25, 1.0, 1.0))
     assert told_by_object(crossing) == ((FACES + 16 + 32 + 64 * 6, *around), (0.5, 0.25, 1.0, 1.0))
     assert_same_answers(told, asked)
+
+
+def test_materials_whose_objects_have_one_slot_tell_others_of_no_more():
+    scene = stage(24)
+    glass, water, label = medium("Glass", 1.5), medium("Water", 1.33), diffuse(0.5)
+    ball("Glass", 0.7, glass, 2, (-0.3, 0.0, 0.0))
+    bead = ball("Water", 0.7, water, 1, (0.4, 0.1, 0.0))
+    asked, told = asked_and_told(scene)
+    assert [inputs(material)["Material Slots"].default_value for material in (glass, water)] == [1, 1]
+    assert_same_answers(told, asked)
+    bead.data.materials.clear()
+    for material in (label, water):
+        bead.data.materials.append(material)
+    for face in bead.data.polygons:
+        face.material_index = 0 if face.center.x > 0.5 else 1
+    asked, told = asked_and_told(scene)
+    assert [inputs(material)["Material Slots"].default_value for material in (glass, water)] == [1, 8]
+    assert_same_answers(told, asked)
+    bead.modifiers.new("Nodes", "NODES").node_group = bpy.data.node_groups.new("Empty", "GeometryNodeTree")
+    bead.data.materials.clear()
+    bead.data.materials.append(water)
+    nd.analyse(scene)
+    assert [inputs(material)["Material Slots"].default_value for material in (glass, water)] == [1, 8]
+    nd.clear_analysis(scene)
+    assert [inputs(material)["Material Slots"].default_value for material in (glass, water)] == [8, 8]
 
 
 def test_a_medium_that_changes_or_disperses_is_asked_for_its_values():
@@ -1434,7 +1459,13 @@ def test_a_change_that_nobody_analysed_shows(change):
     assert differing(told, asked) < OUTLIERS
 
 
-VALUES = ["its index changes", "its colour changes", "its depth changes", "something foreign comes in"]
+VALUES = [
+    "its index changes",
+    "its colour changes",
+    "its depth changes",
+    "something foreign comes in",
+    "it gets a second material",
+]
 
 
 @functools.cache
@@ -1455,6 +1486,7 @@ def stale_values() -> dict[str, np.ndarray]:
     ):
         inputs(bpy.data.materials[name])[socket].default_value = value
     foreign.location = cells.place("something foreign comes in", 0.0, 0.0, 0.0)
+    bpy.data.objects["it gets a second material"].data.materials.append(foreign.active_material)
     return cells.cut(render(ALARM_SAMPLES))
 
 
