@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 
 from . import contacts
-from .contacts import AIR, FACES, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
+from .contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
 from .materials import dielectric_node
 from .media import media, own_priority
 from .node_group import (
@@ -710,6 +710,8 @@ def _told(survey: _Survey, row: _Row, contact: Contact, foreign: bool) -> _Told:
     level = -1.0 if contact.level is None or contact.robust or survey.vague else float(contact.level)
     outside = Outside(contact.code, level, contact.robust, foreign)
     faces = contact.faces
+    if faces is not None and survey.vague:
+        faces = np.where(faces >= LEVELS, PROBE, faces)
     if contact.around is not None:
         around = survey.bodies[contact.around].body
         if len(around.medium) == 1 or around.priority in survey.mixed:
@@ -722,15 +724,17 @@ def _told(survey: _Survey, row: _Row, contact: Contact, foreign: bool) -> _Told:
 
 
 def _by_polygon(mesh: bpy.types.Mesh, triangles: np.ndarray) -> np.ndarray:
-    """Codes of polygons whose triangles agree; the others' are unknown."""
+    """Codes of polygons whose triangles agree, or ask with one level where they are not in air; the others' are unknown."""
     polygons = np.empty(len(triangles), dtype=np.int32)
     mesh.calc_loop_triangles()
     mesh.loop_triangle_polygons.foreach_get("value", polygons)
-    low = np.full(len(mesh.polygons), NEVER, dtype=np.int8)
+    low = np.full(len(mesh.polygons), 127, dtype=np.int8)
     high = np.zeros(len(low), dtype=np.int8)
     np.minimum.at(low, polygons, triangles)
     np.maximum.at(high, polygons, triangles)
-    return np.where(low == high, low, PROBE).astype(np.int8)
+    mixed = np.zeros(len(low), dtype=bool)
+    mixed[polygons[(triangles != AIR) & (triangles != high[polygons])]] = True
+    return np.where((low == high) | ((high >= LEVELS) & ~mixed), high, PROBE).astype(np.int8)
 
 
 def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:

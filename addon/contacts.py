@@ -20,6 +20,9 @@ from . import meshes
 PROBE, AIR, MEDIUM, NEVER = 0, 1, 2, 3
 # A body's code: look at each face.
 FACES = 4
+# From here on a face's code: ask, but bodies of the priority that is left alone decide, as by Contact.level.
+LEVELS = 8
+HIGHEST_LEVEL = 127 - LEVELS
 
 # Surfaces closer than this touch, in sizes of the smaller body.
 TOLERANCE = 1e-5
@@ -127,7 +130,7 @@ class Contact:
 
     :param code: PROBE, AIR, MEDIUM, NEVER, or FACES.
     :param around: index of the body that is the known surrounding medium of code MEDIUM.
-    :param faces: (m,) int8, codes of the triangles where the code is FACES.
+    :param faces: (m,) int8, codes of the triangles where the code is FACES; LEVELS and more are theirs alone.
     :param level: a priority that decides by itself: the first surface of that priority which a ray from the body meets
         tells whether a body of that priority, and nothing else, holds the point.
     :param robust: it overlaps itself.
@@ -295,7 +298,7 @@ def _contact(
     result = Contact(PROBE, robust=robust, partners=partners, coincident=coincident)
     if robust:
         return result
-    codes, group, holders = _face_codes(bodies[index].priority, bodies, place, sides)
+    codes, group, holders, levels = _face_codes(bodies[index].priority, bodies, place, sides)
     around = None
     known = codes == MEDIUM
     count = 0
@@ -308,9 +311,10 @@ def _contact(
         around = names[chosen]
         counts = holders[1][codes == MEDIUM]
         count = int(counts[0]) if (counts == counts[0]).all() else 0
+    codes = np.where((codes == PROBE) & (levels >= 0), LEVELS + levels, codes).astype(np.int8)
     first = int(codes[0])
     if (codes == first).all():
-        return replace(result, code=first, around=around, holders=count)
+        return replace(result, code=first if first < LEVELS else PROBE, around=around, holders=count)
     if not bodies[index].wants_faces:
         return result
     faces = np.empty_like(codes)
@@ -320,13 +324,14 @@ def _contact(
 
 def _face_codes(
     own: int, bodies: Sequence[Body], place: _Placed, sides: list[tuple[int, _Side]]
-) -> tuple[np.ndarray, list[int], tuple[np.ndarray, np.ndarray]]:
+) -> tuple[np.ndarray, list[int], tuple[np.ndarray, np.ndarray], np.ndarray]:
     """The codes of a body's faces, or one code for all of them.
 
     A face that touches a body is unknown only if no stronger one holds it, since that decides.
 
     :return: codes; one body of every surrounding medium; for each face the place of its medium in that list, and the
-        number of bodies of the medium's priority that hold it.
+        number of bodies of the medium's priority that hold it; the only priority that touches or holds it, below 0 where
+        there are none, several, or one beyond HIGHEST_LEVEL.
     """
     all_faces = place.corners.shape[1]
     uniform = all(len(side.touching) == 0 and len(side.inside) in (0, all_faces) for _, side in sides)
@@ -339,6 +344,7 @@ def _face_codes(
     medium, holders = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
     decided = np.zeros(count, dtype=bool)
     doubted = np.zeros(count, dtype=bool)
+    levels, several = np.full(count, -1), np.zeros(count, dtype=bool)
     for priority in sorted({priority for priority, _ in groups}):
         claims = np.zeros(count, dtype=np.intp)
         held = np.zeros(count, dtype=bool)
@@ -348,6 +354,7 @@ def _face_codes(
         for members in (members for key, members in groups.items() if key[0] == priority):
             inside = np.zeros(count, dtype=np.intp)
             for _, side in members:
+                several[side.coincident] = True  # of two faces in one place a ray meets either
                 if len(side.inside) == all_faces:
                     inside += 1
                 else:
@@ -362,6 +369,9 @@ def _face_codes(
             held |= inside > 0
             number += inside
             unsure |= near
+        concerned = held | unsure
+        several |= concerned & (levels >= 0)
+        levels[concerned] = priority
         if priority <= own:
             codes[held] = NEVER
             decided |= held
@@ -376,7 +386,8 @@ def _face_codes(
         decided |= held
         doubted |= unsure
     codes[~decided & doubted] = PROBE
-    return codes, names, (medium, holders)
+    levels[several | (levels > HIGHEST_LEVEL)] = -1
+    return codes, names, (medium, holders), levels
 
 
 def _with_levels(
@@ -396,18 +407,21 @@ def _with_levels(
             own_faults[i] += 1
             own_faults[j] += 1
 
-    def level(i: int, contact: Contact) -> int | None:
-        priorities = {bodies[j].priority for j in contact.partners}
-        if contact.code != PROBE and (contact.faces is None or (contact.faces != PROBE).all()):
-            return None
-        if len(priorities) != 1:
-            return None
-        priority = priorities.pop()
-        ours = own_faults[i] if bodies[i].priority == priority else 0
-        return priority if faults.get(priority, 0) == ours else None
+    def decides(i: int, priority: int) -> bool:
+        return faults.get(priority, 0) == (own_faults[i] if bodies[i].priority == priority else 0)
 
-    levels = [level(i, contact) for i, contact in enumerate(contacts)]
-    return [contact if p is None else replace(contact, level=p) for contact, p in zip(contacts, levels)]
+    def with_level(i: int, contact: Contact) -> Contact:
+        faces = contact.faces
+        if faces is not None:
+            undecided = [code for code in np.unique(faces).tolist() if code >= LEVELS and not decides(i, code - LEVELS)]
+            if undecided:
+                contact = replace(contact, faces=np.where(np.isin(faces, undecided), PROBE, faces))
+        priorities = {bodies[j].priority for j in contact.partners}
+        if contact.code in (PROBE, FACES) and len(priorities) == 1 and decides(i, min(priorities)):
+            return replace(contact, level=min(priorities))
+        return contact
+
+    return [with_level(i, contact) for i, contact in enumerate(contacts)]
 
 
 # Pairs

@@ -21,7 +21,7 @@ struct Interface {
  *
  * `always_air`: the analysis tells so of all objects of the material, which leaves out most of this; looks_ahead: the
  * extent of the media matters. */
-Interface resolve_interface(Medium own, Outside told, int always_air, int looks_ahead, int spectral, float wavelength)
+Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int looks_ahead, int spectral, float wavelength)
 {
   vector away = backfacing() ? -Ng : Ng;
   Medium inner = own;
@@ -41,6 +41,7 @@ Interface resolve_interface(Medium own, Outside told, int always_air, int looks_
       s.mistold = (lies_in_a_medium(P, away, traced) && lies_in_a_medium(P, askew(away), traced)) || !traced;
   }
   else {
+    Outside told = told_of_all;
     int outside = told_outside(told);
     /* Light of one wavelength needs the medium's whole curve, and a look ahead all that holds the point. */
     if (outside == OUTSIDE_MEDIUM && (spectral || (looks_ahead && told.medium.absorbs)))

@@ -11,7 +11,7 @@ from mathutils import Matrix
 
 import nested_dielectric as nd
 from nested_dielectric.analysis import Found
-from nested_dielectric.contacts import AIR, FACES, MEDIUM, NEVER, PROBE
+from nested_dielectric.contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE
 from nested_dielectric.node_group import BY_OBJECT, FACE_ATTRIBUTE, OBJECT_PROPERTIES
 from scenes import (
     add,
@@ -114,8 +114,9 @@ def told_by_object(obj: bpy.types.Object) -> tuple:
 
 
 def told_by_faces(obj: bpy.types.Object) -> tuple | None:
+    """Codes of the polygons, those that know a level as unknown."""
     attribute = obj.data.attributes.get(FACE_ATTRIBUTE)
-    return None if attribute is None else tuple(value.value for value in attribute.data)
+    return None if attribute is None else tuple(v.value if v.value < LEVELS else PROBE for v in attribute.data)
 
 
 def told_code(obj: bpy.types.Object) -> int:
@@ -495,6 +496,10 @@ def test_objects_of_one_material_are_told_of_media_that_absorb():
     assert told_by_object(inside) == ((MEDIUM + 16 + 32, *around), (0.5, 0.25, 1.0, 1.0))
     assert told_by_object(crossing) == ((FACES + 16 + 32 + 64 * 6, *around), (0.5, 0.25, 1.0, 1.0))
     assert_same_answers(told, asked)
+    crossing.modifiers.new("Triangulate", "TRIANGULATE")
+    asked, told = asked_and_told(scene)
+    assert told_by_object(crossing) == ((PROBE + 16 + 64 * 6, 0.0, 1.0, 0.0), None)
+    assert_same_answers(told, asked)
 
 
 def test_materials_whose_objects_have_one_slot_tell_others_of_no_more():
@@ -550,8 +555,9 @@ def test_faces_are_told_apart_where_surfaces_cross():
     assert found.partly == ("Ball", "Other")
     assert {inputs(obj.active_material)["Outside"].default_value for obj in (bead, other)} == {FACES}
     # Of one priority each, and apart: the first surface decides.
-    assert plain(inputs(bead.active_material)["Outside Priority"].default_value) == 2.0
-    assert plain(inputs(other.active_material)["Outside Priority"].default_value) == 1.0
+    for obj, priority in ((bead, 2), (other, 1)):
+        assert plain(inputs(obj.active_material)["Outside Priority"].default_value) == priority
+        assert LEVELS + priority in {value.value for value in obj.data.attributes[FACE_ATTRIBUTE].data}
     assert plain(inputs(bead.active_material)["Surroundings"].default_value[:2]) == (2.0, 1.33)
     for obj, centre, within in ((bead, (1.1, 0.1, 0.2), MEDIUM), (other, (0, 0, 0), NEVER)):
         corners = np.array([vertex.co for vertex in obj.data.vertices])

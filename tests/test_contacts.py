@@ -6,7 +6,7 @@ import pytest
 from mathutils import Matrix
 
 from nested_dielectric import contacts, meshes
-from nested_dielectric.contacts import AIR, FACES, MEDIUM, NEVER, PROBE, Body, Memory, Solid, analyse
+from nested_dielectric.contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Memory, Solid, analyse
 
 # Face centres nearer than this to another surface may be told either way by the brute force.
 OUTSIDE = 1e-6
@@ -101,13 +101,18 @@ def winding(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return np.rint(np.concatenate(result) / (4.0 * np.pi)).astype(int)
 
 
-def brute_force(bodies: list[Body], index: int) -> tuple[np.ndarray, np.ndarray]:
-    """For points all over each face, just outside: codes and media; (m, points)."""
-    own = placed(bodies[index])
+def just_outside(body: Body) -> np.ndarray:
+    """Points all over each face; (m, points, 3)."""
+    own = placed(body)
     normals = np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     weights = np.array([[0.9, 0.05, 0.05], [0.05, 0.9, 0.05], [0.05, 0.05, 0.9]])
-    points = (np.einsum("pc,mcx->mpx", weights, own) + OUTSIDE * normals[:, None]).reshape(-1, 3)
+    return np.einsum("pc,mcx->mpx", weights, own) + OUTSIDE * normals[:, None]
+
+
+def brute_force(bodies: list[Body], index: int) -> tuple[np.ndarray, np.ndarray]:
+    """For points all over each face, just outside: codes and media; (m, points)."""
+    points = just_outside(bodies[index]).reshape(-1, 3)
     best = np.full(len(points), np.inf)
     medium = np.full(len(points), -1)
     for j, body in enumerate(bodies):
@@ -116,11 +121,14 @@ def brute_force(bodies: list[Body], index: int) -> tuple[np.ndarray, np.ndarray]
         wins = (winding(points, placed(body)) >= 1) & (body.priority < best)
         best[wins], medium[wins] = body.priority, body.medium
     codes = np.where(best <= bodies[index].priority, NEVER, np.where(np.isinf(best), AIR, MEDIUM))
-    return codes.reshape(len(own), -1), medium.reshape(len(own), -1)
+    count = len(bodies[index].solid.triangles)
+    return codes.reshape(count, -1), medium.reshape(count, -1)
 
 
 def codes_of(contact, body: Body) -> np.ndarray:
-    return contact.faces if contact.code == FACES else np.full(len(body.solid.triangles), contact.code)
+    """Codes of the faces, those that know a level as unknown."""
+    said = contact.faces if contact.code == FACES else np.full(len(body.solid.triangles), contact.code)
+    return np.where(said < LEVELS, said, PROBE)
 
 
 def assert_true(bodies: list[Body], found: list) -> None:
@@ -132,6 +140,11 @@ def assert_true(bodies: list[Body], found: list) -> None:
         assert (codes[known] == said[known, None]).all()
         if contact.around is not None:
             assert (media[said == MEDIUM] == bodies[contact.around].medium).all()
+        for level in set() if contact.faces is None else set(contact.faces[contact.faces >= LEVELS].tolist()):
+            points = just_outside(body)[contact.faces == level].reshape(-1, 3)
+            for j, other in enumerate(bodies):
+                if j != index and other.priority != level - LEVELS:
+                    assert (winding(points, placed(other)) == 0).all()
 
 
 def random_matrix(rng: np.random.Generator, spread: float) -> np.ndarray:
@@ -190,8 +203,8 @@ def test_only_faces_near_the_crossing_are_left_to_rays():
     bodies = [Body(sphere, at(), 1, 1), Body(sphere, at(1.0, 0.1, 0.2), 2, 2)]
     found = analyse(bodies)
     assert [c.code for c in found] == [FACES, FACES]
-    assert [sorted(set(c.faces.tolist())) for c in found] == [[PROBE, AIR, MEDIUM], [PROBE, AIR, NEVER]]
-    assert all(np.count_nonzero(c.faces == PROBE) < 0.1 * len(sphere.triangles) for c in found)
+    assert [sorted(set(c.faces.tolist())) for c in found] == [[AIR, MEDIUM, LEVELS + 2], [AIR, NEVER, LEVELS + 1]]
+    assert all(np.count_nonzero(c.faces >= LEVELS) < 0.1 * len(sphere.triangles) for c in found)
 
 
 def test_a_body_that_takes_no_faces_is_left_to_rays_where_they_differ():
@@ -261,7 +274,7 @@ def test_bodies_of_equal_priority_fuse():
     sphere = icosphere(2)
     bodies = [Body(sphere, at(), 2, 0), Body(sphere, at(1.1), 2, 0)]
     found = analyse(bodies)
-    assert all(set(c.faces.tolist()) == {PROBE, AIR, NEVER} for c in found)
+    assert all(set(c.faces.tolist()) == {AIR, NEVER, LEVELS + 2} for c in found)
     assert_true(bodies, found)
 
 
@@ -285,7 +298,7 @@ def test_of_two_surroundings_that_with_the_larger_area_is_known():
     ]
     contact = analyse(bodies)[2]
     assert (contact.code, contact.around) == (FACES, 1)
-    assert contact.faces.tolist() == [PROBE] * 80 + [MEDIUM] * 320
+    assert contact.faces.tolist() == [LEVELS + 2] * 80 + [MEDIUM] * 320
 
 
 def test_a_stronger_holder_decides_where_weaker_surfaces_cross():
@@ -362,6 +375,13 @@ def test_a_body_scaled_to_nothing_concerns_nobody():
     assert found[1].code == AIR
 
 
+def levels(contact) -> set[int]:
+    """What the faces that ask know of the only priority around."""
+    return {
+        code - LEVELS if code >= LEVELS else -1 for code in contact.faces.tolist() if code not in (AIR, MEDIUM, NEVER)
+    }
+
+
 def test_one_priority_decides_only_if_its_bodies_are_apart():
     sphere = icosphere()
     cube, one, two = (
@@ -369,18 +389,24 @@ def test_one_priority_decides_only_if_its_bodies_are_apart():
         Body(sphere, at(1.2, scale=0.5), 1, 1),
         Body(sphere, at(-1.2, scale=0.5), 1, 1),
     )
-    assert analyse([cube, one, two])[0].level == 1
-    assert [c.level for c in analyse([cube, one, two])] == [1, 2, 2]
+    assert [levels(c) for c in analyse([cube, one, two])] == [{1}, {2}, {2}]
+    blind = Body(sphere, at(), 2, 2, wants_faces=False)
+    assert analyse([blind, one, two])[0].level == 1
     touching = Body(sphere, at(1.8, scale=0.5), 1, 1)
-    assert analyse([cube, one, two, touching])[0].level is None
+    assert levels(analyse([cube, one, two, touching])[0]) == {-1}
+    assert analyse([blind, one, two, touching])[0].level is None
     apart = [Body(sphere, at(9.0 + x), 1, 1) for x in (0.0, 0.5)]
-    assert analyse([cube, one, two, *apart])[0].level is None
-    assert analyse([cube, one, two, *apart])[1].level == 2
+    assert levels(analyse([cube, one, two, *apart])[0]) == {-1}
+    assert levels(analyse([cube, one, two, *apart])[1]) == {2}
     other = Body(sphere, at(0, 1.2, scale=0.5), 3, 3)
-    assert analyse([cube, one, other])[0].level is None
-    assert analyse([cube, Body(sphere, at(1.2), 2, 2)])[0].level == 2
+    assert levels(analyse([cube, one, other])[0]) == {1, 3}
+    assert analyse([blind, one, other])[0].level is None
+    assert levels(analyse([cube, Body(sphere, at(1.2), 2, 2)])[0]) == {2}
     double = Body(joined(icosphere(1), icosphere(1, 1.0, (0.5, 0, 0))), at(9.0), 1, 1)
-    assert analyse([cube, one, double])[0].level is None
+    assert levels(analyse([cube, one, double])[0]) == {-1}
+    highest = Body(sphere, at(1.2, scale=0.5), 119, 1)
+    assert levels(analyse([cube, highest])[0]) == {119}
+    assert levels(analyse([cube, Body(sphere, at(1.2, scale=0.5), 120, 1)])[0]) == {-1}
 
 
 def random_scene(rng: np.random.Generator) -> list[Body]:
