@@ -63,7 +63,7 @@ def plot(result: dict, path: Path) -> None:
         axis.set_ylabel("relative mean square error")
     figure.suptitle(f"{result['title']}, {result['resolution']} x {result['resolution']}")
     handles, labels = figure.axes[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
     figure.savefig(path, dpi=100)
 
 
