@@ -22,7 +22,9 @@ from .contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Contact, M
 from .materials import dielectric_node
 from .media import media, own_priority
 from .node_group import (
+    AIR_AROUND,
     BY_OBJECT,
+    CLEAR,
     FACE_ATTRIBUTE,
     FOREIGN_SOCKET,
     LEVEL_SOCKET,
@@ -65,15 +67,13 @@ SETTLED_MODIFIERS = frozenset(
 )
 """Modifiers whose result depends on the mesh and on numbers alone, the same in the viewport and in a render."""
 
-AIR_AROUND = (0.0, 1.0, 0.0)
 EVERYWHERE = np.array([(-np.inf,) * 3, (np.inf,) * 3])
 VAGUE = 0.5
 """Margin around what a render may show with another shape, in diagonals of its box: a subdivided surface stays within
 the hull of any coarser one.
 """
 
-CLEAR = (1.0, 1.0, 1.0, 1.0)
-HIGHEST_LEVEL = 2.0**17
+HIGHEST_OBJECT_LEVEL = 2.0**17
 """Of an object's own; single precision keeps it and all that stands beside it."""
 
 
@@ -87,6 +87,11 @@ class Outside:
     foreign: bool = True
     medium: tuple[float, float, float] = AIR_AROUND
     transmittance: tuple[float, float, float, float] = CLEAR
+
+    @property
+    def absorbs(self) -> bool:
+        """Whether the medium outside is said to absorb."""
+        return self.transmittance != CLEAR
 
     def merged(self, other: Outside) -> Outside | None:
         """What holds for both, or None if that is less than each is told."""
@@ -497,20 +502,25 @@ def _body(
 
 def _solid(evaluated: bpy.types.Object) -> Solid:
     """An evaluated mesh, the same object as long as nothing changes it."""
-    mesh = evaluated.to_mesh()
     try:
-        mesh.calc_loop_triangles()
-        vertices = np.empty((len(mesh.vertices), 3), dtype=np.float32)
-        triangles = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
-        if len(triangles):
-            mesh.attributes["position"].data.foreach_get("vector", vertices.reshape(-1))
-            mesh.loop_triangles.foreach_get("vertices", triangles.reshape(-1))
+        vertices, triangles = triangles_of(evaluated.to_mesh())
     finally:
         evaluated.to_mesh_clear()
     key = hashlib.blake2b(vertices.tobytes() + triangles.tobytes(), digest_size=16).digest()
     if key not in _solids:
         _solids[key] = Solid(vertices.astype(np.float64), triangles)
     return _solids[key]
+
+
+def triangles_of(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """A mesh's vertices, (n, 3) float32, and the corners of its triangles, (m, 3) int32."""
+    mesh.calc_loop_triangles()
+    vertices = np.empty((len(mesh.vertices), 3), dtype=np.float32)
+    triangles = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
+    if len(vertices):  # without them it has no attribute
+        mesh.attributes["position"].data.foreach_get("vector", vertices.reshape(-1))
+    mesh.loop_triangles.foreach_get("vertices", triangles.reshape(-1))
+    return vertices, triangles
 
 
 def _forget_unused(survey: _Survey) -> None:
@@ -809,8 +819,7 @@ def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
         return
     values: tuple = (None, None)
     if outside is not None:
-        absorbs = outside.transmittance != CLEAR
-        values = ((_facts_in_one(outside), *outside.medium), outside.transmittance if absorbs else None)
+        values = ((_facts_in_one(outside), *outside.medium), outside.transmittance if outside.absorbs else None)
     for name, value in zip(OBJECT_PROPERTIES, values):
         before = obj.get(name)
         if value is None:
@@ -824,13 +833,9 @@ def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
 
 def _facts_in_one(outside: Outside) -> float:
     """The number of which osl/outside.h reads the digits; 0 tells nothing."""
-    level = int(outside.level) + 1 if outside.level <= HIGHEST_LEVEL else 0
+    level = int(outside.level) + 1 if outside.level <= HIGHEST_OBJECT_LEVEL else 0
     return float(
-        outside.code
-        + 8 * outside.overlaps_itself
-        + 16 * (not outside.foreign)
-        + 32 * (outside.transmittance != CLEAR)
-        + 64 * level
+        outside.code + 8 * outside.overlaps_itself + 16 * (not outside.foreign) + 32 * outside.absorbs + 64 * level
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 
 from . import meshes
+from .analysis import triangles_of
 from .lights import carried_lamps, light_carriers, listed_lamps
 from .materials import dielectric_node, dielectrics, medium_material
 from .media import dispersing_materials, get_priority, media
@@ -86,16 +87,11 @@ def _shape(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Shape | No
     if mesh is None:
         return None
     try:
-        mesh.calc_loop_triangles()
-        vertices = np.empty(len(mesh.vertices) * 3, dtype=np.float32)
-        triangles = np.empty(len(mesh.loop_triangles) * 3, dtype=np.int32)
-        mesh.vertices.foreach_get("co", vertices)
-        mesh.loop_triangles.foreach_get("vertices", triangles)
+        vertices, triangles = triangles_of(mesh)
     finally:
         evaluated.to_mesh_clear()
     matrix = np.array(evaluated.matrix_world, dtype=np.float64)
-    world = vertices.reshape(-1, 3).astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
-    triangles = triangles.reshape(-1, 3)
+    world = vertices.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         triangles = triangles[:, ::-1]
     return _Shape(obj, world, triangles)

@@ -48,6 +48,10 @@ FOREIGN_SOCKET = "Foreign Objects"
 SURROUNDINGS_SOCKET = "Surroundings"
 SURROUNDINGS_COLOR_SOCKET = "Surroundings Transmittance"
 SLOTS_SOCKET = "Material Slots"
+AIR_AROUND = (0.0, 1.0, 0.0)
+"""Priority, IOR and Transmittance Depth of surroundings that are told to nobody."""
+
+CLEAR = (1.0, 1.0, 1.0, 1.0)
 BY_OBJECT = 5
 """As in osl/outside.h, beside the codes of :mod:`contacts`: each object has its own."""
 
@@ -96,13 +100,13 @@ _ANALYSIS_SOCKETS = {
     SURROUNDINGS_SOCKET: (
         "AroundMedium",
         "VECTOR",
-        (0.0, 1.0, 0.0),
+        AIR_AROUND,
         "Priority, IOR and Transmittance Depth of the medium outside",
     ),
     SURROUNDINGS_COLOR_SOCKET: (
         "AroundTransmittance",
         "COLOR",
-        (1.0, 1.0, 1.0, 1.0),
+        CLEAR,
         "Transmittance of the medium outside",
     ),
     SLOTS_SOCKET: (
