@@ -7,7 +7,7 @@ connected piece of a surface. Faces near a crossing stay unknown: rays must ask 
 from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -32,6 +32,8 @@ ROUNDING = 2.5e-7
 CHILDREN = 8
 TOP = 32
 CHUNK = 4096
+# Part of a hierarchy's boxes from which on it is faster to look at all faces than at those in boxes.
+MANY = 8
 # The largest groups, in levels above the faces, which are flat enough for discs.
 DEEPEST_DISCS = 2
 # Height above the centre, in sizes of the island, from which a face certainly looks away from it.
@@ -39,6 +41,7 @@ LEAST_HEIGHT = 1e-6
 # Cosine of the largest angle between faces that coincide.
 PARALLEL = 0.999
 
+_COUNT = np.int32
 _NO_FACES = np.empty(0, dtype=np.intp)
 
 
@@ -123,6 +126,12 @@ class Body:
     certain: bool = True
     wants_faces: bool = True
 
+    def is_same(self, other: Body) -> bool:
+        """Whether it is the same solid in the same place with the same values."""
+        return np.array_equal(self.matrix, other.matrix) and all(
+            getattr(self, item.name) == getattr(other, item.name) for item in fields(self) if item.name != "matrix"
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Contact:
@@ -148,6 +157,12 @@ class Contact:
     partners: tuple[int, ...] = ()
     coincident: tuple[tuple[int, np.ndarray, np.ndarray], ...] = ()
     holders: int = 0
+
+    @cached_property
+    def face_levels(self) -> tuple[int, ...]:
+        """Priorities that decide by themselves at some faces."""
+        codes = _NO_FACES if self.faces is None else _sorted_set(self.faces, LEVELS + HIGHEST_LEVEL + 1)
+        return tuple((codes[codes >= LEVELS] - LEVELS).tolist())
 
 
 @dataclass(frozen=True, eq=False)
@@ -298,16 +313,16 @@ def _contact(
     result = Contact(PROBE, robust=robust, partners=partners, coincident=coincident)
     if robust:
         return result
-    codes, group, holders, levels = _face_codes(bodies[index].priority, bodies, place, sides)
+    codes, names, holders, levels = _face_codes(bodies[index].priority, bodies, place, sides)
     around = None
     known = codes == MEDIUM
     count = 0
     if known.any():
-        areas = place.areas if len(codes) > 1 else np.ones(1)
-        names = list(group)
-        area = np.bincount(holders[0][known], weights=areas[known], minlength=len(names))
-        chosen = int(np.argmax(area))
-        codes[known & (holders[0] != chosen)] = PROBE
+        chosen = int(holders[0][known][0])
+        if (holders[0][known] != chosen).any():
+            area = np.bincount(holders[0][known], weights=place.areas[known], minlength=len(names))
+            chosen = int(np.argmax(area))
+            codes[known & (holders[0] != chosen)] = PROBE
         around = names[chosen]
         counts = holders[1][codes == MEDIUM]
         count = int(counts[0]) if (counts == counts[0]).all() else 0
@@ -341,18 +356,18 @@ def _face_codes(
         groups.setdefault((bodies[j].priority, bodies[j].medium), []).append((j, side))
     codes = np.full(count, AIR, dtype=np.int8)
     names: list[int] = []
-    medium, holders = np.zeros(count, dtype=np.intp), np.zeros(count, dtype=np.intp)
+    medium, holders = np.zeros(count, dtype=_COUNT), np.zeros(count, dtype=_COUNT)
     decided = np.zeros(count, dtype=bool)
     doubted = np.zeros(count, dtype=bool)
-    levels, several = np.full(count, -1), np.zeros(count, dtype=bool)
+    levels, several = np.full(count, -1, dtype=_COUNT), np.zeros(count, dtype=bool)
     for priority in sorted({priority for priority, _ in groups}):
-        claims = np.zeros(count, dtype=np.intp)
+        claims = np.zeros(count, dtype=_COUNT)
         held = np.zeros(count, dtype=bool)
-        number = np.zeros(count, dtype=np.intp)
-        which = np.zeros(count, dtype=np.intp)
+        number = np.zeros(count, dtype=_COUNT)
+        which = np.zeros(count, dtype=_COUNT)
         unsure = np.zeros(count, dtype=bool)
         for members in (members for key, members in groups.items() if key[0] == priority):
-            inside = np.zeros(count, dtype=np.intp)
+            inside = np.zeros(count, dtype=_COUNT)
             for _, side in members:
                 several[side.coincident] = True  # of two faces in one place a ray meets either
                 if len(side.inside) == all_faces:
@@ -411,11 +426,9 @@ def _with_levels(
         return faults.get(priority, 0) == (own_faults[i] if bodies[i].priority == priority else 0)
 
     def with_level(i: int, contact: Contact) -> Contact:
-        faces = contact.faces
-        if faces is not None:
-            undecided = [code for code in np.unique(faces).tolist() if code >= LEVELS and not decides(i, code - LEVELS)]
-            if undecided:
-                contact = replace(contact, faces=np.where(np.isin(faces, undecided), PROBE, faces))
+        undecided = [LEVELS + level for level in contact.face_levels if not decides(i, level)]
+        if undecided:
+            contact = replace(contact, faces=np.where(np.isin(contact.faces, undecided), PROBE, contact.faces))
         priorities = {bodies[j].priority for j in contact.partners}
         if contact.code in (PROBE, FACES) and len(priorities) == 1 and decides(i, min(priorities)):
             return replace(contact, level=min(priorities))
@@ -508,7 +521,14 @@ def _faces_in_box(place: _Placed, low: np.ndarray, high: np.ndarray) -> np.ndarr
             faces = faces[faces < level.shape[1]]
         for side in sides:
             faces = faces[level[side, faces] + box[side] <= 0.0]
-    return faces
+        if len(faces) * MANY > level.shape[1]:
+            break
+    else:
+        return faces
+    meet = np.ones(bounds[0].shape[1], dtype=bool)
+    for side in sides:
+        meet &= bounds[0][side] <= -box[side]
+    return np.flatnonzero(meet)
 
 
 def _normals(place: _Placed, faces: np.ndarray | slice = slice(None)) -> np.ndarray:
@@ -552,7 +572,7 @@ class _Hierarchy:
     @cached_property
     def bounds(self) -> list[np.ndarray]:
         """(6, k) lowest coordinates and highest ones negated, then those of every CHILDREN of them, and so on."""
-        bounds = np.empty((6, len(self.order)))
+        bounds = _padded(len(self.order))
         for axis in range(3):
             a, b, c = (self.place.vertices[axis][corner[self.order]] for corner in self.place.corners)
             np.minimum(np.minimum(a, b), c, out=bounds[axis])
@@ -586,11 +606,23 @@ class _Hierarchy:
         return self._discs[depth]
 
 
+def _padded(count: int) -> np.ndarray:
+    """(6, count) room for bounds, the first columns of such that nothing meets and that fill the last group."""
+    return np.full((6, count + -count % CHILDREN), np.inf)[:, :count]
+
+
+def _groups(bounds: np.ndarray) -> np.ndarray:
+    """(6, groups, CHILDREN) the bounds of a level, from :func:`_padded`, by group."""
+    return bounds.base.reshape(6, -1, CHILDREN)
+
+
 def _joined(bounds: np.ndarray) -> np.ndarray:
-    """The bounds of every CHILDREN columns."""
-    joined = np.pad(bounds, ((0, 0), (0, -bounds.shape[1] % CHILDREN)), constant_values=np.inf)
-    for _ in range(CHILDREN.bit_length() - 1):
-        joined = np.minimum(joined[:, ::2], joined[:, 1::2])
+    """The bounds of the groups of a level."""
+    children = np.moveaxis(_groups(bounds), 2, 0)
+    joined = _padded(children.shape[2])
+    np.minimum(children[0], children[1], out=joined)
+    for child in children[2:]:
+        np.minimum(joined, child, out=joined)
     return joined
 
 
@@ -599,16 +631,13 @@ def _meeting(a: _Hierarchy, b: _Hierarchy, tolerance: float) -> tuple[np.ndarray
     depth = [len(a.bounds) - 1, len(b.bounds) - 1]
     i, j = (index.ravel() for index in np.indices((a.bounds[-1].shape[1], b.bounds[-1].shape[1])))
     i, j = _meet(a.bounds[-1], i, b.bounds[-1], j, tolerance)
-    child = np.arange(CHILDREN)
     while any(depth) and len(i):
         if depth[0] >= depth[1]:
             depth[0] -= 1
-            i, j = (i[:, None] * CHILDREN + child).ravel(), np.repeat(j, CHILDREN)
+            i, j = _children_meet(a.bounds[depth[0]], i, b.bounds[depth[1]], j, tolerance)
         else:
             depth[1] -= 1
-            i, j = np.repeat(i, CHILDREN), (j[:, None] * CHILDREN + child).ravel()
-        exist = (i < a.bounds[depth[0]].shape[1]) & (j < b.bounds[depth[1]].shape[1])
-        i, j = _meet(a.bounds[depth[0]], i[exist], b.bounds[depth[1]], j[exist], tolerance)
+            j, i = _children_meet(b.bounds[depth[1]], j, a.bounds[depth[0]], i, tolerance)
         # Discs cost as much as their triangles, so a few pairs are better taken apart.
         if max(depth) <= DEEPEST_DISCS and len(i) > a.bounds[depth[0]].shape[1] + b.bounds[depth[1]].shape[1]:
             i, j = _discs_meet(a.discs(depth[0]), i, b.discs(depth[1]), j, tolerance)
@@ -616,13 +645,27 @@ def _meeting(a: _Hierarchy, b: _Hierarchy, tolerance: float) -> tuple[np.ndarray
 
 
 def _meet(
-    a: np.ndarray, i: np.ndarray, b: np.ndarray, j: np.ndarray, tolerance: float
+    a: np.ndarray, i: np.ndarray, b: np.ndarray, j: np.ndarray, tolerance: float, axes: Sequence[int] = (0, 1, 2)
 ) -> tuple[np.ndarray, np.ndarray]:
     """The pairs of places in two arrays of bounds that meet."""
-    for axis in range(3):
-        meet = (a[axis, i] + b[axis + 3, j] <= tolerance) & (b[axis, j] + a[axis + 3, i] <= tolerance)
-        i, j = i[meet], j[meet]
+    for axis in axes:
+        meet = a[axis].take(i) + b[axis + 3].take(j) <= tolerance
+        meet &= b[axis].take(j) + a[axis + 3].take(i) <= tolerance
+        meet = np.flatnonzero(meet)
+        i, j = i.take(meet), j.take(meet)
     return i, j
+
+
+def _children_meet(
+    a: np.ndarray, i: np.ndarray, b: np.ndarray, j: np.ndarray, tolerance: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """The pairs of places in two arrays of bounds that meet, the first among the children of groups i."""
+    # Children stand side by side, so along one axis they are read by the group.
+    groups = _groups(a)
+    meet = groups[0].take(i, axis=0) + b[3].take(j)[:, None] <= tolerance
+    meet &= b[0].take(j)[:, None] + groups[3].take(i, axis=0) <= tolerance
+    pair, child = np.divmod(np.flatnonzero(meet), CHILDREN)
+    return _meet(a, i.take(pair) * CHILDREN + child, b, j.take(pair), tolerance, (1, 2))
 
 
 def _discs_meet(
