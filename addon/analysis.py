@@ -13,6 +13,7 @@ import hashlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, cached_property
+from time import perf_counter
 
 import bpy
 import numpy as np
@@ -72,6 +73,12 @@ VAGUE = 0.5
 """Margin around what a render may show with another shape, in diagonals of its box: a subdivided surface stays within
 the hull of any coarser one.
 """
+
+NEAR = 1e-3
+"""Margin around what has changed, which may touch what its box does not meet."""
+
+PATIENCE = 0.03
+"""Seconds that one look at a scene may take while the mouse moves something in it."""
 
 HIGHEST_OBJECT_LEVEL = 2.0**17
 """Of an object's own; single precision keeps it and all that stands beside it."""
@@ -172,27 +179,41 @@ def analyse(scene: bpy.types.Scene) -> Found:
     layer = scene.view_layers[0]
     layer.update()
     forget_shapes()
-    return _conclude(_survey(scene, layer.depsgraph))
+    return _look(_survey(scene, layer.depsgraph))
 
 
 def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Analyse again after an update of a scene whose media are kept analysed, as far as the update reaches."""
-    changed = {update.id.original: update for update in depsgraph.updates if isinstance(update.id, _CONCERNED)}
-    if not changed:
-        return
-    for data, update in changed.items():
-        if update.is_updated_geometry or isinstance(data, bpy.types.Mesh):
-            _shapes.pop(data.session_uid, None)
+    survey = _updated(scene, depsgraph)
+    if survey is not None:
+        _look(survey)
+
+
+def hold(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Make all that an update of a scene may concern ask the scene, which takes little time, and return whether
+    :func:`settle` is to be called once nothing moves any more.
+
+    What comes, goes or changes its nature is analysed at once, and so is all if the last look was quick: asking means to
+    compile shaders in a rendered view.
+    """
+    survey = _updated(scene, depsgraph)
+    if survey is None:
+        return False
+    latest = _surveys.get(scene.session_uid)
+    settled = latest and (latest.settled or latest)
+    if not settled or not survey.is_like(settled) or settled.seconds < PATIENCE:
+        _look(survey)
+        return False
+    _conclude(replace(survey, contacts=settled.contacts, settled=settled))
+    # What was told comes back as an update that changes no row.
+    return not all(map(_Row.is_same, latest.rows, survey.rows))
+
+
+def settle(scene: bpy.types.Scene) -> None:
+    """Analyse what :func:`hold` left."""
     survey = _surveys.get(scene.session_uid)
-    alone = survey is not None and all(
-        isinstance(data, bpy.types.Mesh) or (isinstance(data, bpy.types.Object) and data.name in survey.known)
-        for data in changed
-    )
-    if alone:
-        objects = {data for data in changed if isinstance(data, bpy.types.Object)}
-        _conclude(_renewed(survey, objects, depsgraph))
-    else:
-        _conclude(_survey(scene, depsgraph))
+    if survey is not None and survey.settled is not None:
+        _look(replace(survey, settled=None))
 
 
 def forget_shapes() -> None:
@@ -283,6 +304,15 @@ _CONCERNED = (
 )
 
 
+def _look(survey: _Survey) -> Found:
+    """Find the contacts of a survey, and tell the media."""
+    start = perf_counter()
+    survey = replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], _memory))
+    found = _conclude(survey)
+    _surveys[survey.scene.session_uid] = replace(survey, seconds=perf_counter() - start)
+    return found
+
+
 def _conclude(survey: _Survey) -> Found:
     told = _outsides(survey)
     _tell(survey, told)
@@ -315,7 +345,7 @@ class _Facts:
     can_be_told: bool
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Row:
     """An instance of an object.
 
@@ -331,8 +361,25 @@ class _Row:
     body: Body | None = None
     doubt: str = ""
 
+    def is_like(self, other: _Row) -> bool:
+        """Whether the other differs in place, shape and values at most."""
+        return (self.obj, self.medium, self.body is None, self.doubt) == (
+            other.obj,
+            other.medium,
+            other.body is None,
+            other.doubt,
+        )
 
-@dataclass(frozen=True)
+    def is_same(self, other: _Row) -> bool:
+        """Whether the same follows from the other."""
+        return self is other or (
+            self.is_like(other)
+            and np.array_equal(self.box, other.box)
+            and (self.body is None or self.body.is_same(other.body))
+        )
+
+
+@dataclass(frozen=True, eq=False)
 class _Survey:
     """Every instance in a scene, and what the bodies among them know.
 
@@ -340,6 +387,8 @@ class _Survey:
     :param facts: of the materials.
     :param doubts: names and reasons.
     :param known: objects by name whose rows may be made anew one by one; empty where objects are instanced.
+    :param settled: the survey whose contacts these are, if some rows have changed since.
+    :param seconds: how long it took to find the contacts and to tell the media.
     """
 
     scene: bpy.types.Scene
@@ -348,6 +397,22 @@ class _Survey:
     doubts: tuple[tuple[str, str], ...]
     known: dict[str, int]
     contacts: list[Contact]
+    settled: _Survey | None = None
+    seconds: float = 0.0
+
+    def is_like(self, other: _Survey) -> bool:
+        """Whether rows of the other differ in place, shape and values at most."""
+        return (len(self.rows), self.doubts, self.facts.keys()) == (
+            len(other.rows),
+            other.doubts,
+            other.facts.keys(),
+        ) and all(map(_Row.is_like, self.rows, other.rows))
+
+    @cached_property
+    def changed(self) -> list[_Row]:
+        """Media whose place, shape or values are others than in the settled survey: as they were and as they are."""
+        pairs = zip(self.settled.rows, self.rows) if self.settled else ()
+        return [row for before, now in pairs if now.medium and not now.is_same(before) for row in (before, now)]
 
     @cached_property
     def elsewhere(self) -> set[bpy.types.Object]:
@@ -386,7 +451,7 @@ _last: dict[int, Found] = {}
 
 
 def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
-    facts = {material: _facts(material) for material in bpy.data.materials if dielectric_node(material) is not None}
+    facts = _all_facts()
     rows: list[_Row] = []
     plain = True
     instancing_doubt = cache(_instancing_doubt)
@@ -410,20 +475,36 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     doubts.update(
         (obj.name, "is hidden in the viewport alone") for obj in media(scene) if obj not in seen and not obj.hide_render
     )
-    return _with_contacts(_Survey(scene, rows, facts, tuple(doubts.items()), known, []))
+    return _Survey(scene, rows, facts, tuple(doubts.items()), known, [])
 
 
-def _renewed(survey: _Survey, objects: set[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> _Survey:
-    """The survey after these objects alone have moved or changed."""
+def _updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey | None:
+    """The survey after an update, without contacts; None if the update concerns nothing in it."""
+    changed = {update.id.original: update for update in depsgraph.updates if isinstance(update.id, _CONCERNED)}
+    if not changed:
+        return None
+    for data, update in changed.items():
+        if update.is_updated_geometry or isinstance(data, bpy.types.Mesh):
+            _shapes.pop(data.session_uid, None)
+    survey = _surveys.get(scene.session_uid)
+    if survey is None or not all(_is_known(survey, data) for data in changed):
+        return _survey(scene, depsgraph)
     rows = list(survey.rows)
-    for obj in objects:
+    for obj in (data for data in changed if isinstance(data, bpy.types.Object)):
         evaluated = obj.evaluated_get(depsgraph)
-        rows[survey.known[obj.name]] = _row(survey.scene, survey.facts, evaluated, np.array(evaluated.matrix_world))
-    return _with_contacts(_Survey(survey.scene, rows, survey.facts, survey.doubts, survey.known, []))
+        rows[survey.known[obj.name]] = _row(scene, survey.facts, evaluated, np.array(evaluated.matrix_world))
+    return _Survey(scene, rows, survey.facts, survey.doubts, survey.known, [])
 
 
-def _with_contacts(survey: _Survey) -> _Survey:
-    return replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], _memory))
+def _is_known(survey: _Survey, data: bpy.types.ID) -> bool:
+    """Whether an update of it concerns the rows of the updated objects alone."""
+    if isinstance(data, bpy.types.Object):
+        return data.name in survey.known
+    if isinstance(data, bpy.types.Material):
+        return data in survey.facts and survey.facts == _all_facts()
+    if isinstance(data, bpy.types.ShaderNodeTree):
+        return survey.facts == _all_facts()
+    return isinstance(data, bpy.types.Mesh)
 
 
 _SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"}
@@ -455,10 +536,14 @@ def _row(
             body = _body(obj, evaluated, matrix, facts[material], exact)
             if body is not None:
                 return _Row(obj, box, True, body)
-        margin = np.linalg.norm(box[1] - box[0]) * VAGUE
-        return _Row(obj, box + np.array([[-margin], [margin]]), True)
+        return _Row(obj, _grown(box, VAGUE), True)
     except _Doubt as doubt:
         return _Row(obj, EVERYWHERE, bool(dielectric), doubt=str(doubt))
+
+
+def _grown(box: np.ndarray, margin: float) -> np.ndarray:
+    """A (2, 3) box with a margin in diagonals of it."""
+    return box + np.linalg.norm(box[1] - box[0]) * margin * np.array([[-1.0], [1.0]])
 
 
 def _instancing_doubt(instancer: bpy.types.Object | None = None) -> str:
@@ -506,7 +591,9 @@ def _solid(evaluated: bpy.types.Object) -> Solid:
         vertices, triangles = triangles_of(evaluated.to_mesh())
     finally:
         evaluated.to_mesh_clear()
-    key = hashlib.blake2b(vertices.tobytes() + triangles.tobytes(), digest_size=16).digest()
+    content = hashlib.sha256(vertices)
+    content.update(triangles)
+    key = content.digest()
     if key not in _solids:
         _solids[key] = Solid(vertices.astype(np.float64), triangles)
     return _solids[key]
@@ -519,15 +606,22 @@ def triangles_of(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     triangles = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
     if len(vertices):  # without them it has no attribute
         mesh.attributes["position"].data.foreach_get("vector", vertices.reshape(-1))
-    mesh.loop_triangles.foreach_get("vertices", triangles.reshape(-1))
+    if 0 < len(triangles) == len(mesh.polygons):  # all are triangles, and the attribute is read fifty times as fast
+        mesh.attributes[".corner_vert"].data.foreach_get("value", triangles.reshape(-1))
+    else:
+        mesh.loop_triangles.foreach_get("vertices", triangles.reshape(-1))
     return vertices, triangles
 
 
 def _forget_unused(survey: _Survey) -> None:
-    kept = {id(row.body.solid) for row in survey.bodies}
+    kept = {id(row.body.solid) for each in (survey, survey.settled) if each for row in each.bodies}
     for shapes in (_shapes, _solids):
         for key in [key for key, solid in shapes.items() if id(solid) not in kept]:
             del shapes[key]
+
+
+def _all_facts() -> dict[bpy.types.Material, _Facts]:
+    return {material: _facts(material) for material in bpy.data.materials if dielectric_node(material) is not None}
 
 
 def _facts(material: bpy.types.Material) -> _Facts:
@@ -644,9 +738,10 @@ def _is_same_in_renders(modifier: bpy.types.Modifier) -> bool:
 
 
 def _wants_faces(obj: bpy.types.Object) -> bool:
-    """Whether the faces of the mesh are those of the render."""
+    """Whether the faces of the mesh are those of the render, and may be written."""
     return (
         obj.data.library is None
+        and obj.mode == "OBJECT"
         and obj.data.shape_keys is None
         and all(modifier.type == "NODES" for modifier in obj.modifiers)
     )
@@ -671,11 +766,13 @@ def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
     # Bodies of one priority that overlap are one: a ray may go from one to the next.
     priorities = np.array([row.body.priority for row in survey.bodies])
     foreign = np.isin(priorities, priorities[foreign])
-    near_vague = _meets(boxes, [row.box for row in survey.vague])
+    unclear = [row.box for row in survey.vague] + [_grown(row.box, NEAR) for row in survey.changed]
+    near_unclear = _meets(boxes, unclear)
+    changed = {row.body.priority for row in survey.changed if row.body is not None}
     told: dict[bpy.types.Object, list[_Told]] = {}
     for index, (row, contact) in enumerate(zip(survey.bodies, survey.contacts)):
-        if doubtful or near_vague[index]:
-            one = _Told(Outside(overlaps_itself=contact.robust))
+        if doubtful or near_unclear[index] or _speaks_of(survey, contact, changed):
+            one = _Told(Outside(overlaps_itself=contact.robust or row in survey.changed))
         else:
             one = _told(survey, row, contact, bool(foreign[[index, *contact.partners]].any()))
         told.setdefault(row.obj, []).append(one)
@@ -683,6 +780,15 @@ def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
         if row.medium and (row.body is None or row.obj in survey.elsewhere):
             told[row.obj] = [_Told(Outside())]
     return _merged(told)
+
+
+def _speaks_of(survey: _Survey, contact: Contact, priorities: set[int]) -> bool:
+    """Whether a contact says anything of the bodies of some priorities."""
+    return (
+        contact.level in priorities
+        or (contact.around is not None and survey.bodies[contact.around].body.priority in priorities)
+        or not priorities.isdisjoint(contact.face_levels)
+    )
 
 
 def _merged(told: dict[bpy.types.Object, list[_Told]]) -> dict[bpy.types.Object, _Told]:
@@ -694,10 +800,11 @@ def _merged(told: dict[bpy.types.Object, list[_Told]]) -> dict[bpy.types.Object,
         for codes in (row.faces for row in rows if row.faces is not None):
             before = faces.get(obj.data, codes)
             faces[obj.data] = np.where(before == codes, codes, PROBE)
+    busy = _busy(told)
     faces = {
         mesh: _by_polygon(mesh, codes)
         for mesh, codes in faces.items()
-        if users[mesh] == mesh.users - mesh.use_fake_user and codes.any()
+        if users[mesh] == mesh.users - mesh.use_fake_user and codes.any() and mesh not in busy
     }
     result = {}
     for obj, rows in told.items():
@@ -706,6 +813,11 @@ def _merged(told: dict[bpy.types.Object, list[_Told]]) -> dict[bpy.types.Object,
             outside = Outside(overlaps_itself=any(row.outside.overlaps_itself for row in rows))
         result[obj] = _Told(outside, faces.get(obj.data))
     return result
+
+
+def _busy(objects: Iterable[bpy.types.Object]) -> set[bpy.types.ID]:
+    """Meshes that belong to the tool of another mode than Object Mode."""
+    return {obj.data for obj in objects if obj.mode != "OBJECT"}
 
 
 def _meets(boxes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
@@ -735,6 +847,8 @@ def _told(survey: _Survey, row: _Row, contact: Contact, foreign: bool) -> _Told:
 
 def _by_polygon(mesh: bpy.types.Mesh, triangles: np.ndarray) -> np.ndarray:
     """Codes of polygons whose triangles agree, or ask with one level where they are not in air; the others' are unknown."""
+    if len(triangles) == len(mesh.polygons):
+        return triangles
     polygons = np.empty(len(triangles), dtype=np.int32)
     mesh.calc_loop_triangles()
     mesh.loop_triangle_polygons.foreach_get("value", polygons)
@@ -766,8 +880,9 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
         _tell_material(material, common or Outside(BY_OBJECT), slots.get(material))
         for obj in objects:
             _tell_object(obj, None if common else told[obj].outside)
-    # In other modes than Object Mode a mesh belongs to the mode's tool.
-    busy = {obj.data for obj in told if obj.mode != "OBJECT"}
+    if survey.settled:
+        return  # what asks needs no faces, and the faces of the others are as they were
+    busy = _busy(told)
     for mesh, faces in {obj.data: one.faces for obj, one in told.items()}.items():
         if isinstance(mesh, bpy.types.Mesh) and mesh not in busy:
             _tell_faces(mesh, faces)

@@ -10,6 +10,7 @@ import pytest
 from mathutils import Matrix
 
 import nested_dielectric as nd
+from nested_dielectric import analysis, registration
 from nested_dielectric.analysis import Found
 from nested_dielectric.contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE
 from nested_dielectric.node_group import BY_OBJECT, FACE_ATTRIBUTE, OBJECT_PROPERTIES
@@ -1570,7 +1571,7 @@ def swap_meshes(bead) -> None:
     bead.data = bpy.data.objects["Water"].data
 
 
-@pytest.mark.parametrize(
+EVERY_CHANGE = pytest.mark.parametrize(
     "change",
     [
         move,
@@ -1591,20 +1592,241 @@ def swap_meshes(bead) -> None:
     ],
     ids=lambda change: change.__name__,
 )
-def test_with_the_extension_every_change_is_followed(change):
+
+
+@pytest.fixture
+def with_extension():
+    nd.register()
+    yield
+    nd.unregister()
+
+
+@pytest.fixture
+def in_window(with_extension, monkeypatch):
+    """As in a window, except that nothing comes to rest by itself and no look is quick."""
+    monkeypatch.setattr(registration, "has_window", lambda: True)
+    monkeypatch.setattr(analysis, "PATIENCE", 0.0)
+    monkeypatch.setattr(registration, "REST", 1e9)
+
+
+@EVERY_CHANGE
+def test_with_the_extension_every_change_is_followed(change, with_extension):
     """Without being asked to, it tells what an analysis from scratch would."""
     scene, bead = ordinary_scene()
     ball("Nearby", 0.2, diffuse(), None, (-0.6, 0.0, 0.0))
-    nd.register()
-    try:
-        nd.analyse(scene)
+    nd.analyse(scene)
+    bpy.context.view_layer.update()
+    before = snapshot()
+    change(bead)
+    bpy.context.view_layer.update()
+    followed = snapshot()
+    nd.analyse(scene)
+    assert followed == snapshot()
+    assert followed != before
+
+
+@EVERY_CHANGE
+def test_in_a_window_what_may_have_changed_asks_until_all_rests(change, in_window):
+    scene, bead = ordinary_scene()
+    ball("Nearby", 0.2, diffuse(), None, (-0.6, 0.0, 0.0))
+    nd.analyse(scene)
+    bpy.context.view_layer.update()
+    change(bead)
+    for _ in range(3):  # what is told comes back as updates
         bpy.context.view_layer.update()
-        before = snapshot()
-        change(bead)
+    meanwhile = everything_heard()
+    assert registration.analyse_at_rest() is None
+    at_rest = snapshot()
+    nd.analyse(scene)
+    assert at_rest == snapshot()
+    assert_no_more_heard(meanwhile, everything_heard())
+
+
+@pytest.mark.parametrize("seed", range(15))
+def test_in_a_window_nothing_untrue_is_told_while_media_move(seed, in_window):
+    """Random balls of few priorities and materials, and something foreign, are moved, resized and put in each other's
+    place."""
+    scene = fresh()
+    rng = np.random.default_rng(seed)
+    # One each, or what is told would be what several have in common.
+    materials = [medium(f"Medium {index}", 1.3 + 0.1 * (index % 3)) for index in range(7)]
+
+    def somewhere() -> tuple[float, ...]:
+        return tuple(rng.uniform(-2.5, 2.5, 3))
+
+    for index in range(7):
+        ball(f"Ball {index}", rng.uniform(0.2, 1.2), materials[index], int(rng.integers(1, 4)), somewhere())
+    ball("Foreign", 0.3, diffuse(), None, somewhere())
+    objects = [obj for obj in bpy.data.objects if obj.type == "MESH"]
+    nd.analyse(scene)
+    bpy.context.view_layer.update()
+    asking = telling = 0
+    for _ in range(6):
+        for obj in rng.choice(objects, 2):
+            obj.location = somewhere()
+            obj.scale = (rng.uniform(0.5, 1.5),) * 3
+            bpy.context.view_layer.update()
+        meanwhile = everything_heard()
+        asks = [(facts["codes"] == PROBE).all() for facts in meanwhile.values()]
+        asking += sum(asks)
+        telling += len(asks) - sum(asks)
+        if rng.random() < 0.5:
+            registration.analyse_at_rest()
+        else:
+            nd.analyse(scene)
+        assert_no_more_heard(meanwhile, everything_heard())
         bpy.context.view_layer.update()
-        followed = snapshot()
-        nd.analyse(scene)
-        assert followed == snapshot()
-        assert followed != before
-    finally:
-        nd.unregister()
+    assert asking and telling
+
+
+def everything_heard() -> dict[str, dict]:
+    """What the shader hears of each medium's outside."""
+    return {obj.name: heard(obj) for obj in bpy.data.objects if obj.type == "MESH" and media_of(obj)}
+
+
+def heard(obj: bpy.types.Object) -> dict:
+    """Facts by name; the codes are those of the polygons."""
+    code, level, overlaps, foreign, around, left = told_by_material(media_of(obj)[0])
+    if code == BY_OBJECT:
+        facts, *around = obj[OBJECT_PROPERTIES[0]] if OBJECT_PROPERTIES[0] in obj else (0.0,) * 4
+        code, overlaps, foreign, level = int(facts) % 8, int(facts) & 8, not int(facts) & 16, int(facts) // 64 - 1
+        left = obj[OBJECT_PROPERTIES[1]] if int(facts) & 32 else (1.0,) * 4
+    codes = np.full(len(obj.data.polygons), int(code))
+    if code == FACES:
+        attribute = obj.data.attributes.get(FACE_ATTRIBUTE)
+        codes[:] = PROBE if attribute is None else [item.value for item in attribute.data]
+    return {
+        "codes": codes,
+        "level": level,
+        "overlaps": bool(overlaps),
+        "foreign": bool(foreign),
+        "around": plain(around) + plain(left) if (codes == MEDIUM).any() else None,
+    }
+
+
+def assert_no_more_heard(meanwhile: dict[str, dict], truth: dict[str, dict]) -> None:
+    """Each fact that is heard is true, or says less."""
+    for name, facts in meanwhile.items():
+        true = truth[name]
+        assert facts["overlaps"] or not true["overlaps"], name
+        if len(facts["codes"]) != len(true["codes"]) or (facts["codes"] == PROBE).all():
+            assert (facts["codes"] == PROBE).all(), name
+        else:
+            assert ((facts["codes"] == PROBE) | (facts["codes"] == true["codes"])).all(), name
+            assert facts["around"] in (None, true["around"]), name
+        if ((facts["codes"] == PROBE) | (facts["codes"] >= LEVELS)).any():  # others need not know
+            assert facts["level"] in (-1, true["level"]), name
+            assert facts["foreign"] or not true["foreign"], name
+
+
+def test_in_a_window_only_what_is_near_asks(in_window):
+    scene, bead = ordinary_scene()
+    nd.analyse(scene)
+    bpy.context.view_layer.update()
+    bead.location.x = 0.1
+    bpy.context.view_layer.update()
+    assert codes() == {"Water": PROBE, "Bead": PROBE, "Crossing": PROBE, "Bystander": AIR}
+    bead.location.x = 0.0
+    bpy.context.view_layer.update()
+    assert codes() == {"Water": FACES, "Bead": MEDIUM, "Crossing": FACES, "Bystander": AIR}
+
+
+def crossing_one_partner() -> int:
+    ball("Water", 1.0, medium("Water", 1.33), 5)
+    ball("Partner", 0.5, medium("Partner", 1.5), 1, (1.2, 0.0, 0.0))
+    return 1
+
+
+def crossing_one_partner_without_faces_to_tell() -> int:
+    priority = crossing_one_partner()
+    bpy.data.objects["Water"].modifiers.new("Array", "ARRAY").count = 1
+    return priority
+
+
+def crossing_two_partners() -> int:
+    ball("Second", 0.5, medium("Second", 1.7), 2, (-1.2, 0.0, 0.0))
+    return crossing_one_partner()
+
+
+def inside_a_partner() -> int:
+    ball("Water", 1.0, medium("Water", 1.33), 5)
+    ball("Partner", 1.5, medium("Partner", 1.5), 7)
+    return 7
+
+
+@pytest.mark.parametrize(
+    "place",
+    [crossing_one_partner, crossing_one_partner_without_faces_to_tell, crossing_two_partners, inside_a_partner],
+    ids=lambda place: place.__name__,
+)
+def test_in_a_window_all_that_know_a_priority_ask_when_another_body_of_it_moves(place, in_window):
+    """It may overlap one of the bodies that they know of, which then do not decide alone, far from them."""
+    scene = fresh()
+    other = ball("Other", 0.5, medium("Other", 1.6))
+    priority = place()
+    nd.set_priority(other, priority)
+    other.location.x = 5.0
+    nd.analyse(scene)
+    bpy.context.view_layer.update()
+    assert hears_of("Water", priority)
+    other.location.x = 1.9
+    bpy.context.view_layer.update()
+    assert not hears_of("Water", priority)
+    registration.analyse_at_rest()
+    assert codes()["Partner"] == FACES and not hears_of("Water", priority)
+
+
+def hears_of(name: str, priority: int) -> bool:
+    facts = heard(bpy.data.objects[name])
+    return (
+        facts["level"] == priority
+        or (facts["codes"] == LEVELS + priority).any()
+        or (facts["around"] is not None and facts["around"][0] == priority)
+    )
+
+
+def test_in_a_window_a_file_is_saved_with_what_an_analysis_tells(in_window, tmp_path):
+    scene, bead = ordinary_scene()
+    nd.analyse(scene)
+    bpy.context.view_layer.update()
+    bead.location.x = 0.1
+    bpy.context.view_layer.update()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"), copy=True)
+    assert codes() == {"Water": FACES, "Bead": MEDIUM, "Crossing": FACES, "Bystander": AIR}
+
+
+def test_in_a_window_a_scene_that_is_quickly_looked_at_is_followed_at_once(in_window, monkeypatch):
+    monkeypatch.setattr(analysis, "PATIENCE", np.inf)
+    scene, bead = ordinary_scene()
+    nd.analyse(scene)
+    bpy.context.view_layer.update()
+    bead.location.x = 0.1
+    bpy.context.view_layer.update()
+    assert codes() == {"Water": FACES, "Bead": MEDIUM, "Crossing": FACES, "Bystander": AIR}
+
+
+def test_in_a_window_nothing_is_analysed_while_the_mouse_works(in_window, monkeypatch):
+    scene, bead = ordinary_scene()
+    nd.analyse(scene)
+    bpy.context.view_layer.update()
+    bead.location.x = 0.1
+    bpy.context.view_layer.update()
+    assert bpy.app.timers.is_registered(registration.analyse_at_rest)
+    monkeypatch.setattr(registration, "is_at_work", lambda: True)
+    assert registration.analyse_at_rest() == registration.REST
+    assert codes()["Bead"] == PROBE
+
+
+def test_a_mesh_that_is_sculpted_is_not_told_by_faces(in_window):
+    """Its attributes belong to the tool, so they may be those of another shape."""
+    scene, bead = ordinary_scene()
+    nd.analyse(scene)
+    bpy.context.view_layer.objects.active = bpy.data.objects["Water"]
+    bpy.ops.object.mode_set(mode="SCULPT")
+    bpy.context.view_layer.update()
+    registration.analyse_at_rest()
+    assert codes() == {"Water": PROBE, "Bead": MEDIUM, "Crossing": FACES, "Bystander": AIR}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    registration.analyse_at_rest()
+    assert codes()["Water"] == FACES
