@@ -34,8 +34,6 @@ TOP = 32
 CHUNK = 4096
 # Part of a hierarchy's boxes from which on it is faster to look at all faces than at those in boxes.
 MANY = 8
-# The largest groups, in levels above the faces, which are flat enough for discs.
-DEEPEST_DISCS = 2
 # Height above the centre, in sizes of the island, from which a face certainly looks away from it.
 LEAST_HEIGHT = 1e-6
 # Cosine of the largest angle between faces that coincide.
@@ -582,29 +580,6 @@ class _Hierarchy:
             levels.append(_joined(levels[-1]))
         return levels
 
-    @cached_property
-    def _discs(self) -> dict[int, np.ndarray]:
-        return {}
-
-    def discs(self, depth: int) -> np.ndarray:
-        """(8, k) centre, unit normal, radius and half the height of a disc around each group of a level."""
-        if depth not in self._discs:
-            size = CHILDREN**depth
-            count = self.bounds[depth].shape[1]
-            faces = np.pad(self.order, (0, count * size - len(self.order)), mode="edge").reshape(count, size).T
-            normal = np.stack([part.sum(axis=0) for part in _normals(self.place, faces)])
-            normal /= np.maximum(_length(normal), 1e-300)
-            centre = (self.bounds[depth][:3] - self.bounds[depth][3:]) / 2.0
-            height, radius = np.zeros(count), np.zeros(count)
-            for corner in self.place.corners:
-                vertices = corner[faces]
-                offset = [axis[vertices] - c for axis, c in zip(self.place.vertices, centre)]
-                along = _dot(offset, normal)
-                np.maximum(height, np.abs(along).max(axis=0), out=height)
-                np.maximum(radius, (_dot(offset, offset) - along * along).max(axis=0), out=radius)
-            self._discs[depth] = np.concatenate([centre, normal, np.sqrt(radius)[None], height[None]])
-        return self._discs[depth]
-
 
 def _padded(count: int) -> np.ndarray:
     """(6, count) room for bounds, the first columns of such that nothing meets and that fill the last group."""
@@ -638,9 +613,6 @@ def _meeting(a: _Hierarchy, b: _Hierarchy, tolerance: float) -> tuple[np.ndarray
         else:
             depth[1] -= 1
             j, i = _children_meet(b.bounds[depth[1]], j, a.bounds[depth[0]], i, tolerance)
-        # Discs cost as much as their triangles, so a few pairs are better taken apart.
-        if max(depth) <= DEEPEST_DISCS and len(i) > a.bounds[depth[0]].shape[1] + b.bounds[depth[1]].shape[1]:
-            i, j = _discs_meet(a.discs(depth[0]), i, b.discs(depth[1]), j, tolerance)
     return a.order[i], b.order[j]
 
 
@@ -664,21 +636,9 @@ def _children_meet(
     groups = _groups(a)
     meet = groups[0].take(i, axis=0) + b[3].take(j)[:, None] <= tolerance
     meet &= b[0].take(j)[:, None] + groups[3].take(i, axis=0) <= tolerance
-    pair, child = np.divmod(np.flatnonzero(meet), CHILDREN)
-    return _meet(a, i.take(pair) * CHILDREN + child, b, j.take(pair), tolerance, (1, 2))
-
-
-def _discs_meet(
-    a: np.ndarray, i: np.ndarray, b: np.ndarray, j: np.ndarray, tolerance: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """The pairs of places in two arrays of discs that are not apart along the normal of either."""
-    p, q = a[:, i], b[:, j]
-    offset = p[:3] - q[:3]
-    cosine = np.abs(_dot(p[3:6], q[3:6]))
-    sine = np.sqrt(np.maximum(1.0 - cosine * cosine, 0.0)) + 1e-7
-    meet = np.abs(_dot(offset, p[3:6])) <= p[7] + q[6] * sine + q[7] * cosine + tolerance
-    meet &= np.abs(_dot(offset, q[3:6])) <= q[7] + p[6] * sine + p[7] * cosine + tolerance
-    return i[meet], j[meet]
+    found = np.flatnonzero(meet)
+    pair = found // CHILDREN
+    return _meet(a, (i.take(pair) - pair) * CHILDREN + found, b, j.take(pair), tolerance, (1, 2))
 
 
 def _touching(a: _Placed, b: _Placed, first: np.ndarray, second: np.ndarray, tolerance: float) -> tuple[_Side, _Side]:
