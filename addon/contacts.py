@@ -66,8 +66,10 @@ class Solid:
 
     @cached_property
     def order(self) -> np.ndarray:
-        """(m,) the triangles, neighbours in space one after the other; all that is private counts them so."""
-        return _morton_order(self.vertices.T, self.triangles.T)
+        """(m,) the triangles by their first corners, neighbours in space one after the other; all that is private counts
+        them so.
+        """
+        return _morton_order(self.vertices.T[:, self.triangles[:, 0]])
 
     @cached_property
     def corners(self) -> np.ndarray:
@@ -543,12 +545,10 @@ def _normals(place: _Placed, faces: np.ndarray | slice = slice(None)) -> np.ndar
 # Where two surfaces touch
 
 
-def _morton_order(vertices: np.ndarray, corners: np.ndarray) -> np.ndarray:
-    """Triangles sorted along a curve that fills space (Morton 1966). vertices: (3, n); corners: (3, k)."""
-    code = np.zeros(corners.shape[1], dtype=np.int64)
-    for axis in range(3):
-        a, b, c = (vertices[axis][corner] for corner in corners)
-        place = a + b + c
+def _morton_order(points: np.ndarray) -> np.ndarray:
+    """(3, k) points sorted along a curve that fills space (Morton 1966)."""
+    code = np.zeros(points.shape[1], dtype=np.int64)
+    for axis, place in enumerate(points):
         low = place.min()
         bits = ((place - low) * (1023.0 / max(float(place.max() - low), 1e-300))).astype(np.int64)
         for shift, mask in ((16, 0x30000FF), (8, 0x300F00F), (4, 0x30C30C3), (2, 0x9249249)):
@@ -814,17 +814,11 @@ def _faces_inside(a: _Placed, touching: np.ndarray, b: _Placed, tolerance: float
     return found if len(faces) == 0 else np.sort(np.concatenate([faces, found]))
 
 
-def _windings(
-    points: np.ndarray, place: _Placed, left_out: np.ndarray | None = None, within: np.ndarray | None = None
-) -> np.ndarray:
+def _windings(points: np.ndarray, place: _Placed, left_out: np.ndarray | None = None) -> np.ndarray:
     """The winding numbers of a closed mesh about points, as signed crossings along rays upwards.
-
-    An edge that a ray meets is decided as if the point were moved by an infinitesimal along x and a smaller one along y
-    (Edelsbrunner and Muecke 1990, Simulation of simplicity), so neighbouring triangles agree.
 
     :param points: (k, 3).
     :param left_out: (k,) the triangle that is not counted for each point.
-    :param within: (k,) the only island that is counted for each point.
     :return: (k,) integers.
     """
     owners, faces = [_NO_FACES], [_NO_FACES]
@@ -836,9 +830,19 @@ def _windings(
     if left_out is not None:
         other = face != left_out[owner]
         owner, face = owner[other], face[other]
-    if within is not None:
-        same = place.solid.islands[face] == within[owner]
-        owner, face = owner[same], face[same]
+    return _crossings(points, place, owner, face)
+
+
+def _crossings(points: np.ndarray, place: _Placed, owner: np.ndarray, face: np.ndarray) -> np.ndarray:
+    """Signed crossings of the rays upwards from points with some triangles, outwards positive.
+
+    An edge that a ray meets is decided as if the point were moved by an infinitesimal along x and a smaller one along y
+    (Edelsbrunner and Muecke 1990, Simulation of simplicity), so neighbouring triangles agree.
+
+    :param points: (k, 3).
+    :param owner: (n,) points; face: the triangles that may lie above each.
+    :return: (k,) integers.
+    """
     a, b, c = (place.vertices[:, corner[face]] - points[owner].T for corner in place.corners)
     areas = [_area(u, v) for u, v in ((b, c), (c, a), (a, b))]
     sides = [_side(area, u, v) for area, (u, v) in zip(areas, ((b, c), (c, a), (a, b)))]
@@ -890,10 +894,13 @@ def _star_shaped(place: _Placed) -> np.ndarray:
     normals = _normals(place)
     offset = [axis[place.corners[0]] - c[islands] for axis, c in zip(place.vertices, centre)]
     behind = _dot(offset, normals) < LEAST_HEIGHT * size[islands] * _length(normals)
-    star = np.flatnonzero(np.bincount(islands[behind], minlength=len(size)) == 0)
-    result = np.zeros(len(size), dtype=bool)
-    result[star] = _windings(centre.T[star], place, within=star) == 1
-    return result
+    star = np.bincount(islands[behind], minlength=len(size)) == 0
+    over = star[islands]
+    for axis, c in zip(place.vertices[:2], centre[:2]):
+        beyond = [axis[corner] > c[islands] for corner in place.corners]
+        over &= (beyond[0] != beyond[1]) | (beyond[1] != beyond[2])
+    faces = np.flatnonzero(over)
+    return star & (_crossings(centre.T, place, islands[faces], faces) == 1)
 
 
 def _islands_touch(place: _Placed) -> bool:
@@ -906,7 +913,7 @@ def _islands_touch(place: _Placed) -> bool:
 
     def hierarchy(island: int) -> _Hierarchy:
         faces = order[ends[island - 1] if island else 0 : ends[island]]
-        return _Hierarchy(place, faces[_morton_order(place.vertices, place.corners[:, faces])])
+        return _Hierarchy(place, faces[_morton_order(place.vertices[:, place.corners[0, faces]])])
 
     for pair in zip(*_overlapping_boxes(low, high, 2.0 * TOLERANCE)):
         tolerance = TOLERANCE * float(size[list(pair)].min()) + ROUNDING * reach
