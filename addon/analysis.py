@@ -123,6 +123,7 @@ class Found:
     :param asking: media that ask the scene everywhere.
     :param overlapping: media that overlap themselves.
     :param coincident: pairs of media with faces in the same place.
+    :param stale: media that linked files tell of other surroundings than they have here.
     :param doubts: why nothing is told to any medium, by name; empty where it is.
     """
 
@@ -131,6 +132,7 @@ class Found:
     asking: tuple[str, ...] = ()
     overlapping: tuple[str, ...] = ()
     coincident: tuple[tuple[str, str], ...] = ()
+    stale: tuple[str, ...] = ()
     doubts: tuple[tuple[str, str], ...] = ()
 
     def __str__(self) -> str:
@@ -142,6 +144,7 @@ class Found:
                 (self.partly, "know what surrounds them except near crossings"),
                 (() if self.doubts else self.asking, "ask the scene what surrounds them"),
                 (self.overlapping, "overlap themselves, which takes longer"),
+                (self.stale, "show magenta, because their linked file tells them otherwise"),
             )
             if names
         ]
@@ -740,8 +743,7 @@ def _is_same_in_renders(modifier: bpy.types.Modifier) -> bool:
 def _wants_faces(obj: bpy.types.Object) -> bool:
     """Whether the faces of the mesh are those of the render, and may be written."""
     return (
-        obj.data.library is None
-        and obj.mode == "OBJECT"
+        obj.mode == "OBJECT"
         and obj.data.shape_keys is None
         and all(modifier.type == "NODES" for modifier in obj.modifiers)
     )
@@ -756,6 +758,28 @@ class _Told:
 
     outside: Outside
     faces: np.ndarray | None = None
+
+    @property
+    def codes(self) -> np.ndarray:
+        """Of the faces, or one for all."""
+        if self.outside.code != FACES:
+            return np.array([self.outside.code])
+        return np.array([PROBE]) if self.faces is None else self.faces
+
+    def is_true(self, truth: _Told) -> bool:
+        """Whether the truth tells all that this does."""
+        outside, codes = self.outside, self.codes
+        asks = ((codes == PROBE) | (codes >= LEVELS)).any()
+        return bool(
+            _are_true(codes, truth.codes)
+            and (
+                not (codes == MEDIUM).any()
+                or (outside.medium, outside.transmittance) == (truth.outside.medium, truth.outside.transmittance)
+            )
+            and (outside.overlaps_itself or not truth.outside.overlaps_itself)
+            and (not asks or outside.foreign or not truth.outside.foreign)
+            and (not asks or outside.level in (-1.0, truth.outside.level))
+        )
 
 
 def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
@@ -782,6 +806,11 @@ def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
     return _merged(told)
 
 
+def _are_true(codes: np.ndarray | None, truth: np.ndarray) -> bool:
+    """Whether codes tell no more than the true ones."""
+    return codes is None or bool(((codes == PROBE) | (codes == truth)).all())
+
+
 def _speaks_of(survey: _Survey, contact: Contact, priorities: set[int]) -> bool:
     """Whether a contact says anything of the bodies of some priorities."""
     return (
@@ -806,6 +835,7 @@ def _merged(told: dict[bpy.types.Object, list[_Told]]) -> dict[bpy.types.Object,
         for mesh, codes in faces.items()
         if users[mesh] == mesh.users - mesh.use_fake_user and codes.any() and mesh not in busy
     }
+    faces = {mesh: codes for mesh, codes in faces.items() if mesh.library is None or _are_true(_faces_of(mesh), codes)}
     result = {}
     for obj, rows in told.items():
         outside = _common(row.outside for row in rows)
@@ -874,7 +904,7 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
     for material, objects in users.items():
         if not survey.facts[material].can_be_told:
             continue
-        common = _common(told[obj].outside for obj in objects)
+        common = None if material.library else _common(told[obj].outside for obj in objects)
         if material in others and common is not None:
             common = Outside(overlaps_itself=common.overlaps_itself) if common.code == PROBE else None
         _tell_material(material, common or Outside(BY_OBJECT), slots.get(material))
@@ -954,22 +984,66 @@ def _facts_in_one(outside: Outside) -> float:
     )
 
 
+def _outside_in(material: bpy.types.Material) -> Outside:
+    """What a material tells its objects."""
+    inputs = dielectric_node(material).inputs
+    return Outside(
+        inputs[OUTSIDE_SOCKET].default_value,
+        inputs[LEVEL_SOCKET].default_value,
+        inputs[OVERLAP_SOCKET].default_value,
+        inputs[FOREIGN_SOCKET].default_value,
+        tuple(inputs[SURROUNDINGS_SOCKET].default_value),
+        tuple(inputs[SURROUNDINGS_COLOR_SOCKET].default_value),
+    )
+
+
+def _outside_of(obj: bpy.types.Object) -> Outside:
+    """What an object's custom properties tell, the other way round than :func:`_facts_in_one`."""
+    medium, transmittance = (obj.get(name) for name in OBJECT_PROPERTIES)
+    if medium is None:
+        return Outside()
+    facts = int(medium[0])
+    return Outside(
+        facts & 7,
+        (facts >> 6) - 1.0,
+        bool(facts & 8),
+        not facts & 16,
+        tuple(medium[1:]),
+        tuple(transmittance) if facts & 32 and transmittance is not None else CLEAR,
+    )
+
+
+def _faces_of(mesh: bpy.types.Mesh) -> np.ndarray | None:
+    """What a mesh tells its faces."""
+    attribute = mesh.attributes.get(FACE_ATTRIBUTE)
+    if attribute is None:
+        return None
+    faces = np.empty(len(mesh.polygons), dtype=np.int8)
+    attribute.data.foreach_get("value", faces)
+    return faces
+
+
+def _heard(obj: bpy.types.Object, material: bpy.types.Material) -> _Told:
+    """What the shader reads of an object's outside."""
+    outside = _outside_in(material)
+    faces = _faces_of(obj.data) if isinstance(obj.data, bpy.types.Mesh) else None
+    return _Told(_outside_of(obj) if outside.code == BY_OBJECT else outside, faces)
+
+
 def _tell_faces(mesh: bpy.types.Mesh, faces: np.ndarray | None) -> None:
     """Write the attribute of a mesh's faces, or with None remove it."""
     if mesh.library is not None:
         return
-    attribute = mesh.attributes.get(FACE_ATTRIBUTE)
+    before = _faces_of(mesh)
     if faces is None:
-        if attribute is not None:
-            mesh.attributes.remove(attribute)
+        if before is not None:
+            mesh.attributes.remove(mesh.attributes[FACE_ATTRIBUTE])
             mesh.update_tag()
         return
-    if attribute is None:
-        attribute = mesh.attributes.new(FACE_ATTRIBUTE, "INT8", "FACE")
-    before = np.empty(len(faces), dtype=np.int8)
-    attribute.data.foreach_get("value", before)
-    if not np.array_equal(before, faces):
-        attribute.data.foreach_set("value", faces)
+    if before is None:
+        mesh.attributes.new(FACE_ATTRIBUTE, "INT8", "FACE")
+    if before is None or not np.array_equal(before, faces):
+        mesh.attributes[FACE_ATTRIBUTE].data.foreach_set("value", faces)
         mesh.update_tag()
 
 
@@ -989,5 +1063,17 @@ def _found(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> Found:
         asking=names(PROBE),
         overlapping=tuple(obj.name for obj, one in told.items() if one.outside.overlaps_itself),
         coincident=tuple(sorted(pairs)),
+        stale=tuple(obj.name for obj, one in told.items() if _is_stale(survey, obj, one)),
         doubts=tuple(dict(doubts).items()),
+    )
+
+
+def _is_stale(survey: _Survey, obj: bpy.types.Object, told: _Told) -> bool:
+    """Whether linked data, which an analysis cannot change, tell an object more than is true."""
+    materials = {slot.material for slot in obj.material_slots} & survey.facts.keys()
+    return any(
+        (material.library or obj.library or obj.data.library)
+        and survey.facts[material].can_be_told
+        and not _heard(obj, material).is_true(told)
+        for material in materials
     )

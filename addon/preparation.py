@@ -83,6 +83,14 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
         problems += coincident
         if parted:
             found = analyse(scene)
+        problems += [
+            Problem(
+                name,
+                "is told in its linked file of other surroundings than it has here, and shows magenta",
+                "clear the analysis in that file, or make the object and its material local",
+            )
+            for name in found.stale
+        ]
     return Preparation(tuple(changes), tuple(problems + find_problems(scene)), found)
 
 

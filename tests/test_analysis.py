@@ -1216,6 +1216,69 @@ def test_a_linked_material_is_left_as_it_is(tmp_path):
     assert told_by_material(linked) == before and told_code(outside) == PROBE
 
 
+def linked_scene(folder) -> tuple[bpy.types.Scene, bpy.types.Object, dict[str, int]]:
+    """A scene with an instance of a linked collection of media that know their surroundings, and what they knew."""
+    ordinary_scene()
+    ball("Second Bead", 0.1, bpy.data.materials["Bead"], 1, (-5.0, 0.0, 0.0))
+    nd.analyse(bpy.context.scene)
+    file = str(folder / "library.blend")
+    collection = into_collection(*bpy.data.objects)
+    collection.name = "Linked"
+    known = codes()
+    bpy.data.libraries.write(file, {collection})
+    scene = fresh()
+    with bpy.data.libraries.load(file, link=True) as (_, wanted):
+        wanted.collections = ["Linked"]
+    return scene, instance(wanted.collections[0], (0.0, 3.0, 0.0)), known
+
+
+def test_linked_media_that_know_what_is_true_are_left_at_it(tmp_path):
+    scene, _, known = linked_scene(tmp_path)
+    found = nd.analyse(scene)
+    assert not found.stale and not found.doubts
+    assert codes() == known and {FACES, MEDIUM, AIR} <= set(known.values())
+    assert set(found.partly) == {"Water", "Crossing"}
+
+
+def shadowed_by_a_local_medium() -> set[str]:
+    ball("Local", 0.3, medium("Local", 1.7), 0, (5.4, 3.0, 0.0))
+    return {"Bystander"}
+
+
+def crossed_by_a_local_medium() -> set[str]:
+    ball("Local", 0.3, medium("Local", 1.7), 0, (-1.0, 3.0, 0.0))
+    return {"Water"}
+
+
+def around_a_linked_bead() -> set[str]:
+    ball("Local", 0.3, medium("Local", 1.7), 6, (-5.0, 3.0, 0.0))
+    return {"Second Bead"}
+
+
+def something_foreign_at_the_crossing() -> set[str]:
+    ball("Foreign", 0.1, diffuse(), None, (0.9, 3.0, 0.0))
+    return {"Water", "Crossing"}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        shadowed_by_a_local_medium,
+        crossed_by_a_local_medium,
+        around_a_linked_bead,
+        something_foreign_at_the_crossing,
+    ],
+    ids=lambda change: change.__name__,
+)
+def test_linked_media_that_know_what_is_not_true_here_are_named_with_a_remedy(change, tmp_path):
+    scene, _, known = linked_scene(tmp_path)
+    stale = change()
+    done = nd.prepare(scene)
+    assert set(done.found.stale) == stale
+    assert {problem.name for problem in done.problems if "linked file" in str(problem)} == stale
+    assert all("make the object and its material local" in str(p) for p in done.problems if p.name in stale)
+
+
 # Writing ------------------------------------------------------------------------------------------------------------
 
 
