@@ -38,6 +38,8 @@ MANY = 8
 LEAST_HEIGHT = 1e-6
 # Cosine of the largest angle between faces that coincide.
 PARALLEL = 0.999
+# Cosine of the largest angle between faces that a plane through an edge of one may part where no other does.
+NEARLY_PARALLEL = 0.9
 
 _COUNT = np.int32
 _NO_FACES = np.empty(0, dtype=np.intp)
@@ -702,7 +704,7 @@ def _not_apart(
     """The pairs of triangles between which no plane leaves a gap of more than the tolerance.
 
     Of two convex polyhedra that are apart, some plane along a face of one, or along an edge of each, lies between
-    (Gottschalk, Lin and Manocha 1996, OBBTree); of two flat ones in a plane, one that stands on an edge.
+    (Gottschalk, Lin and Manocha 1996, OBBTree); of two flat ones in nearly a plane, one that stands on an edge.
 
     :param a: (4, 3 axes, k) triangles; i: (n,) which of them each pair has; b and j: the others.
     """
@@ -714,15 +716,24 @@ def _not_apart(
         return i, j
     p, q = a[:, :, i].swapaxes(0, 1), b[:, :, j].swapaxes(0, 1)
     edges_p, edges_q = _edges(p), _edges(q)
-    between = _cross(edges_p[:, :, None], edges_q[:, None]).reshape(3, 9, -1)
-    within = _cross(edges_p, p[:, 3:]), _cross(edges_q, q[:, 3:])
-    axes = np.concatenate([between, *within], axis=1)
+    keep = _overlap(p, q, _cross(edges_p[:, :, None], edges_q[:, None]).reshape(3, 9, -1), tolerance)
+    flat = np.flatnonzero(keep & (np.abs(_dot(p[:, 3], q[:, 3])) >= NEARLY_PARALLEL))
+    if len(flat):
+        p, q = p[:, :, flat], q[:, :, flat]
+        within = _cross(edges_p[:, :, flat], p[:, 3:]), _cross(edges_q[:, :, flat], q[:, 3:])
+        keep[flat] = _overlap(p, q, np.concatenate(within, axis=1), tolerance)
+    return i[keep], j[keep]
+
+
+def _overlap(p: np.ndarray, q: np.ndarray, axes: np.ndarray, tolerance: float) -> np.ndarray:
+    """(k,) whether triangles overlap along all axes, but for a gap of the tolerance. p, q: (3 axes, 3 or more, k); axes:
+    (3, n, k).
+    """
     length = _length(axes)
     along_p, along_q = (_dot((t[:, :3] - q[:, :1])[:, :, None], axes[:, None]) for t in (p, q))
     gap = np.maximum(along_p.min(axis=0) - along_q.max(axis=0), along_q.min(axis=0) - along_p.max(axis=0))
     # Nearly parallel edges span no plane.
-    keep = ((gap <= tolerance * length) | (length < 1e-6)).all(axis=0)
-    return i[keep], j[keep]
+    return ((gap <= tolerance * length) | (length < 1e-6)).all(axis=0)
 
 
 def _off_plane(triangles: np.ndarray, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
