@@ -196,15 +196,15 @@ def hold(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
     """Make all that an update of a scene may concern ask the scene, which takes little time, and return whether
     :func:`settle` is to be called once nothing moves any more.
 
-    What comes, goes or changes its nature is analysed at once, and so is all if the last look was quick: asking means to
-    compile shaders in a rendered view.
+    What comes, goes or changes its nature is analysed at once. So is all if the last look at something new was quick, since
+    to ask is another shader, which a rendered view must compile.
     """
     survey = _updated(scene, depsgraph)
     if survey is None:
         return False
     latest = _surveys.get(scene.session_uid)
     settled = latest and (latest.settled or latest)
-    if not settled or not survey.is_like(settled) or settled.seconds < PATIENCE:
+    if not settled or not survey.is_like(settled) or _seconds.get(scene.session_uid, 0.0) < PATIENCE:
         _look(survey)
         return False
     _conclude(replace(survey, contacts=settled.contacts, settled=settled))
@@ -310,9 +310,9 @@ _CONCERNED = (
 def _look(survey: _Survey) -> Found:
     """Find the contacts of a survey, and tell the media."""
     start = perf_counter()
-    survey = replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], _memory))
-    found = _conclude(survey)
-    _surveys[survey.scene.session_uid] = replace(survey, seconds=perf_counter() - start)
+    found = _conclude(replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], _memory)))
+    if _memory.looked_at:
+        _seconds[survey.scene.session_uid] = perf_counter() - start
     return found
 
 
@@ -391,7 +391,6 @@ class _Survey:
     :param doubts: names and reasons.
     :param known: objects by name whose rows may be made anew one by one; empty where objects are instanced.
     :param settled: the survey whose contacts these are, if some rows have changed since.
-    :param seconds: how long it took to find the contacts and to tell the media.
     """
 
     scene: bpy.types.Scene
@@ -401,7 +400,6 @@ class _Survey:
     known: dict[str, int]
     contacts: list[Contact]
     settled: _Survey | None = None
-    seconds: float = 0.0
 
     def is_like(self, other: _Survey) -> bool:
         """Whether rows of the other differ in place, shape and values at most."""
@@ -450,6 +448,9 @@ _solids: dict[bytes, Solid] = {}
 
 _memory = Memory()
 _surveys: dict[int, _Survey] = {}
+_seconds: dict[int, float] = {}
+"""How long the last look at a scene took for which meshes were compared."""
+
 _last: dict[int, Found] = {}
 
 
