@@ -305,6 +305,7 @@ _CONCERNED = (
     bpy.types.GeometryNodeTree,
     bpy.types.Collection,
 )
+_SHADING = (bpy.types.Material, bpy.types.ShaderNodeTree)
 
 
 def _look(survey: _Survey) -> Found:
@@ -493,6 +494,8 @@ def _updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey 
     survey = _surveys.get(scene.session_uid)
     if survey is None or not all(_is_known(survey, data) for data in changed):
         return _survey(scene, depsgraph)
+    if any(isinstance(data, _SHADING) for data in changed) and survey.facts != _all_facts():
+        return _survey(scene, depsgraph)
     rows = list(survey.rows)
     for obj in (data for data in changed if isinstance(data, bpy.types.Object)):
         evaluated = obj.evaluated_get(depsgraph)
@@ -501,14 +504,12 @@ def _updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey 
 
 
 def _is_known(survey: _Survey, data: bpy.types.ID) -> bool:
-    """Whether an update of it concerns the rows of the updated objects alone."""
+    """Whether an update of it concerns the rows of the updated objects alone, if it leaves the facts as they are."""
     if isinstance(data, bpy.types.Object):
         return data.name in survey.known
     if isinstance(data, bpy.types.Material):
-        return data in survey.facts and survey.facts == _all_facts()
-    if isinstance(data, bpy.types.ShaderNodeTree):
-        return survey.facts == _all_facts()
-    return isinstance(data, bpy.types.Mesh)
+        return data in survey.facts
+    return isinstance(data, (bpy.types.Mesh, bpy.types.ShaderNodeTree))
 
 
 _SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"}

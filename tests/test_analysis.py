@@ -1672,13 +1672,19 @@ def in_window(with_extension, monkeypatch):
     monkeypatch.setattr(registration, "REST", 1e9)
 
 
-@EVERY_CHANGE
-def test_with_the_extension_every_change_is_followed(change, with_extension):
-    """Without being asked to, it tells what an analysis from scratch would."""
+def analysed_scene() -> tuple[bpy.types.Scene, bpy.types.Object]:
+    """The ordinary scene with something foreign nearby, and all that was told evaluated."""
     scene, bead = ordinary_scene()
     ball("Nearby", 0.2, diffuse(), None, (-0.6, 0.0, 0.0))
     nd.analyse(scene)
     bpy.context.view_layer.update()
+    return scene, bead
+
+
+@EVERY_CHANGE
+def test_with_the_extension_every_change_is_followed(change, with_extension):
+    """Without being asked to, it tells what an analysis from scratch would."""
+    scene, bead = analysed_scene()
     before = snapshot()
     change(bead)
     bpy.context.view_layer.update()
@@ -1690,10 +1696,7 @@ def test_with_the_extension_every_change_is_followed(change, with_extension):
 
 @EVERY_CHANGE
 def test_in_a_window_what_may_have_changed_asks_until_all_rests(change, in_window):
-    scene, bead = ordinary_scene()
-    ball("Nearby", 0.2, diffuse(), None, (-0.6, 0.0, 0.0))
-    nd.analyse(scene)
-    bpy.context.view_layer.update()
+    scene, bead = analysed_scene()
     change(bead)
     for _ in range(3):  # what is told comes back as updates
         bpy.context.view_layer.update()
@@ -1783,9 +1786,7 @@ def assert_no_more_heard(meanwhile: dict[str, dict], truth: dict[str, dict]) -> 
 
 
 def test_in_a_window_only_what_is_near_asks(in_window):
-    scene, bead = ordinary_scene()
-    nd.analyse(scene)
-    bpy.context.view_layer.update()
+    scene, bead = analysed_scene()
     bead.location.x = 0.1
     bpy.context.view_layer.update()
     assert codes() == {"Water": PROBE, "Bead": PROBE, "Crossing": PROBE, "Bystander": AIR}
@@ -1849,9 +1850,7 @@ def hears_of(name: str, priority: int) -> bool:
 
 
 def test_in_a_window_a_file_is_saved_with_what_an_analysis_tells(in_window, tmp_path):
-    scene, bead = ordinary_scene()
-    nd.analyse(scene)
-    bpy.context.view_layer.update()
+    scene, bead = analysed_scene()
     bead.location.x = 0.1
     bpy.context.view_layer.update()
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"), copy=True)
@@ -1860,18 +1859,14 @@ def test_in_a_window_a_file_is_saved_with_what_an_analysis_tells(in_window, tmp_
 
 def test_in_a_window_a_scene_that_is_quickly_looked_at_is_followed_at_once(in_window, monkeypatch):
     monkeypatch.setattr(analysis, "PATIENCE", np.inf)
-    scene, bead = ordinary_scene()
-    nd.analyse(scene)
-    bpy.context.view_layer.update()
+    scene, bead = analysed_scene()
     bead.location.x = 0.1
     bpy.context.view_layer.update()
     assert codes() == {"Water": FACES, "Bead": MEDIUM, "Crossing": FACES, "Bystander": AIR}
 
 
 def test_in_a_window_nothing_is_analysed_while_the_mouse_works(in_window, monkeypatch):
-    scene, bead = ordinary_scene()
-    nd.analyse(scene)
-    bpy.context.view_layer.update()
+    scene, bead = analysed_scene()
     bead.location.x = 0.1
     bpy.context.view_layer.update()
     assert bpy.app.timers.is_registered(registration.analyse_at_rest)
