@@ -18,6 +18,7 @@ import numpy as np
 from mathutils import Euler, Matrix, Vector
 
 from nested_dielectric import iced_water
+from nested_dielectric.analysis import triangles_of
 
 AIR, WATER, ICE, GLASS = 1.0, 1.33, 1.31, 1.52
 WINE = 1.345
@@ -104,16 +105,12 @@ def banded_sky(frequency: float = 9.0, height: int = 512) -> np.ndarray:
 
 def mesh_arrays(mesh: bpy.types.Mesh, matrix: Matrix | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Vertices and triangles of a mesh, placed by a matrix."""
-    vertices = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.vertices.foreach_get("co", vertices)
-    mesh.calc_loop_triangles()
-    triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("vertices", triangles)
-    vertices = vertices.reshape(-1, 3).astype(np.float64)
+    vertices, triangles = triangles_of(mesh)
+    vertices = vertices.astype(np.float64)
     if matrix is not None:
         placed = np.array(matrix, np.float64)
         vertices = vertices @ placed[:3, :3].T + placed[:3, 3]
-    return vertices, triangles.reshape(-1, 3).astype(np.int64)
+    return vertices, triangles.astype(np.int64)
 
 
 def mesh_of(name: str, vertices: np.ndarray, triangles: np.ndarray, smooth: bool = False) -> bpy.types.Mesh:

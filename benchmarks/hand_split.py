@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import bpy  # before mathutils, which lives inside it
 import numpy as np
-from bench_scenes import AIR, SCENES, Body, joined, mesh_of
+from bench_scenes import AIR, SCENES, Body, joined, mesh_arrays, mesh_of
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
@@ -174,20 +174,12 @@ def surface_of(mesh: bpy.types.Mesh) -> Surface:
     """The surface that a mesh of :func:`placed` has become."""
     if not len(mesh.polygons):
         return Surface(np.empty((0, 3)), np.empty((0, 3), np.int64), np.empty(0, bool))
-    mesh.calc_loop_triangles()
-    vertices = np.empty(3 * len(mesh.vertices), np.float32)
-    mesh.vertices.foreach_get("co", vertices)
-    triangles = np.empty(3 * len(mesh.loop_triangles), np.int32)
-    mesh.loop_triangles.foreach_get("vertices", triangles)
+    vertices, triangles = mesh_arrays(mesh)
     faces = np.empty(len(mesh.loop_triangles), np.int32)
     mesh.loop_triangles.foreach_get("polygon_index", faces)
     own = np.empty(len(mesh.polygons), np.int32)
     mesh.attributes[OWN].data.foreach_get("value", own)
-    return Surface(
-        vertices.reshape(-1, 3).astype(np.float64),
-        triangles.reshape(-1, 3).astype(np.int64),
-        own[faces].astype(bool),
-    )
+    return Surface(vertices, triangles, own[faces].astype(bool))
 
 
 DIRECTIONS = tuple(Vector(way).normalized() for way in ((0.38, 0.53, 0.77), (-0.62, 0.71, 0.33), (0.21, -0.44, -0.85)))
