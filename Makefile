@@ -1,21 +1,32 @@
 # Every target sets itself up; needs CPython 3.13 as python3.13, through pyenv, or through uv.
 PYTHON := .venv/bin/python
+LTS_PYTHON := .venv-lts/bin/python
 STAMP := .venv/.installed
+LTS_STAMP := .venv-lts/.installed
 DIST := dist
 # The version stands in pyproject.toml; the manifest names the same file (a test compares them).
 COLOUR := $(shell sed -n 's/.*"colour-science==\([^"]*\)".*/\1/p' pyproject.toml)
 WHEEL := wheels/colour_science-$(COLOUR)-py3-none-any.whl
 # What "blender --command extension" runs, with its list of valid tags, without a Blender application.
 BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli import cli_extension_handler as run; sys.exit(run(sys.argv[1:]))'
+# Small renders mostly wait for one thread that compiles shaders, so two files at a time take half as long.
+PYTEST_OPTIONS := -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: demo test bench bench-quick extension clean
+.PHONY: demo test test-quick test-lts bench bench-quick extension clean
 
 demo: $(STAMP)
 	$(PYTHON) -m nested_dielectric demo
 
-# Small renders mostly wait for one thread that compiles shaders, so two files at a time take half as long.
 test: $(STAMP)
-	$(PYTHON) -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+	$(PYTHON) -m pytest $(PYTEST_OPTIONS)
+
+# What renders nothing, which "make test" runs first.
+test-quick: $(STAMP)
+	$(PYTHON) -m pytest $(PYTEST_OPTIONS) -m quick
+
+# What touches Blender, each claim on few inputs, on the long-term release, and files that cross between both.
+test-lts: $(STAMP) $(LTS_STAMP)
+	ND_OTHER_BLENDER=$(PYTHON) $(LTS_PYTHON) -m pytest $(PYTEST_OPTIONS) -m 'not pure and not again'
 
 bench: $(STAMP)
 	$(PYTHON) benchmarks/bench.py
@@ -26,20 +37,27 @@ bench-quick: $(STAMP)
 extension: $(STAMP) $(WHEEL)
 	@mkdir -p $(DIST)
 	$(BLENDER_EXTENSION) build --output-dir $(DIST)
-	$(BLENDER_EXTENSION) validate $(DIST)/nested_dielectric-0.1.0.zip
+	$(BLENDER_EXTENSION) validate $(DIST)/nested_dielectric-0.2.0.zip
 
 $(WHEEL): | $(STAMP)
 	$(PYTHON) -m pip download --quiet --disable-pip-version-check --no-deps --only-binary :all: -d wheels colour-science==$(COLOUR)
 
-$(STAMP): pyproject.toml
+# pyproject.toml pins everything; the long-term release takes the place of its Blender.
+REQUIREMENTS = $(@D)/bin/python -c 'import tomllib; p = tomllib.load(open("pyproject.toml", "rb")); \
+  found = p["project"]["dependencies"] + p["project"]["optional-dependencies"]["test"]; \
+  lts = p["tool"]["nested-dielectric"]["lts"]; \
+  print(*[lts if "$(@D)" == ".venv-lts" and each.startswith("bpy==") else each for each in found])'
+
+.venv/.installed .venv-lts/.installed: pyproject.toml
 	@python=$$(python3.13 -c 'import sys; print(sys.executable)' 2>/dev/null \
 	  || PYENV_VERSION=$$(pyenv versions --bare 2>/dev/null | grep '^3\.13' | tail -n 1) pyenv which python3.13 2>/dev/null \
 	  || uv python find 3.13 2>/dev/null) \
 	  && "$$python" -c 'import sys; sys.exit(sys.version_info[:2] != (3, 13))' 2>/dev/null \
 	  || { echo 'CPython 3.13 is needed: install it as python3.13, with "pyenv install 3.13" or with "uv python install 3.13"' >&2; exit 1; }; \
-	"$$python" -m venv --clear .venv
-	$(PYTHON) -m pip install --quiet --disable-pip-version-check -e '.[test]'
+	"$$python" -m venv --clear $(@D)
+	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check $$($(REQUIREMENTS))
+	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check --no-deps -e .
 	@touch $@
 
 clean:
-	rm -rf .venv out dist
+	rm -rf .venv .venv-lts out dist

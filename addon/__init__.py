@@ -21,6 +21,7 @@ from .passes import add_passes
 from .preparation import Preparation, prepare
 from .presets import preset_names
 from .registration import register, unregister
+from .versions import update_materials
 
 __all__ = [
     "ParameterError",
@@ -39,4 +40,5 @@ __all__ = [
     "set_priority",
     "set_shadow_caustics",
     "unregister",
+    "update_materials",
 ]

@@ -14,7 +14,7 @@ from .analysis import triangles_of
 from .lights import carried_lamps, light_carriers, listed_lamps
 from .materials import dielectric_node, dielectrics, medium_material
 from .media import dispersing_materials, get_priority, media
-from .node_group import MATERIAL_SLOTS, SOURCE_HASH
+from .node_group import MATERIAL_SLOTS, group_version
 from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
 
 
@@ -74,7 +74,7 @@ def _node_problems(obj: bpy.types.Object) -> list[Problem]:
         for slot in obj.material_slots
         if slot.material is not None and dielectric_node(slot.material) is None
         for node in slot.material.node_tree.nodes
-        if node.type == "GROUP" and node.node_tree is not None and SOURCE_HASH in node.node_tree
+        if node.type == "GROUP" and group_version(node.node_tree) is not None
     ]
 
 

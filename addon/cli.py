@@ -24,6 +24,7 @@ from .preparation import prepare
 from .presets import load_preset, preset_names
 from .rendering import ProgressLine, render_frame
 from .spectra import DISTRIBUTIONS, GAMUTS, WAVELENGTHS, SpectrumError, plot, spectral_table
+from .versions import update_materials
 from .working_space import working_gamut
 
 PROGRAM = "nested-dielectric"
@@ -76,6 +77,12 @@ def _parser() -> argparse.ArgumentParser:
     )
     _add_file(preparation)
     preparation.set_defaults(run=_prepare)
+
+    update = commands.add_parser(
+        "update", help="bring a .blend's materials to this version of the extension, and save it", allow_abbrev=False
+    )
+    _add_file(update)
+    update.set_defaults(run=_update)
 
     presets = commands.add_parser("presets", help="list the presets", allow_abbrev=False)
     presets.set_defaults(run=_presets)
@@ -163,6 +170,14 @@ def _prepare(options: argparse.Namespace) -> None:
     scene = _open(options.file)
     print(prepare(scene))
     bpy.ops.wm.save_mainfile()
+
+
+def _update(options: argparse.Namespace) -> None:
+    _open(options.file)
+    changes = update_materials()
+    print("\n".join(changes) or "nothing to change")
+    if changes:
+        bpy.ops.wm.save_mainfile()
 
 
 def _presets(options: argparse.Namespace) -> None:

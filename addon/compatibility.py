@@ -2,11 +2,26 @@
 
 from __future__ import annotations
 
+import re
+from functools import cache
+from pathlib import Path
+
+import addon_utils
 import bpy
 
-MINIMUM_VERSION = (5, 1, 0)
-UNTESTED_VERSION = (5, 3, 0)
-"""From here on Cycles' dielectric closure turns the index of back faces itself, and the shader's would be turned twice."""
+MINIMUM_VERSION = (5, 2, 0)
+UNTESTED_VERSION = (5, 4, 0)
+"""The first that no test has run on."""
+
+FRONT_IOR_SIGNS = {
+    "render.use_compositor_frames_cache": ("RenderSettings", "use_compositor_frames_cache"),
+    "wrap_timeline_navigation": ("Scene", "wrap_timeline_navigation"),
+}
+"""What came with Blender 5.3, as did Cycles' closures that take an index as met from the front: paths from a scene, with
+type and property. A material that is rendered without the extension knows Cycles' way by them.
+"""
+
+_TURNED_BY_SHADER = re.compile(r"^\s*backfacing\b", re.MULTILINE)
 
 
 class UnsupportedError(RuntimeError):
@@ -24,16 +39,47 @@ def blender_problem(version: tuple[int, int, int] | None = None, with_osl: bool 
     if version < MINIMUM_VERSION:
         return (
             f"Blender {name} is too old for nested dielectrics: its shaders cannot read other objects' media; "
-            "use Blender 5.1 or 5.2"
-        )
-    if version >= UNTESTED_VERSION:
-        return (
-            f"Blender {name} is newer than this extension, and its Cycles may turn indices of refraction the other way; "
-            "use Blender 5.2 LTS, or a newer version of the extension"
+            "use Blender 5.2 LTS or 5.3"
         )
     if not with_osl:
         return "this Blender was built without Open Shading Language; use the build from blender.org or the bpy wheel"
+    if takes_front_ior() != shows_front_ior():
+        return (
+            f"Blender {name} takes indices of refraction in a way that files cannot tell, so pictures would be wrong; "
+            "use Blender 5.2 LTS or 5.3, or a newer version of the extension"
+        )
     return None
+
+
+def blender_note(version: tuple[int, int, int] | None = None) -> str | None:
+    """Return what there is to know of a Blender that can render nested dielectrics, or None."""
+    version = bpy.app.version if version is None else version
+    if version < UNTESTED_VERSION:
+        return None
+    return (
+        f"Blender {'.'.join(map(str, version[:2]))} is newer than this extension was tested with; its Cycles takes indices "
+        "of refraction in a way that the extension knows"
+    )
+
+
+@cache
+def takes_front_ior() -> bool | None:
+    """Tell whether Cycles' closures take an index as it is met from the front, and turn it on back faces themselves; None
+    if that cannot be found out.
+
+    Cycles' own Glass shader tells: it asks for the side of the face if it has to turn the index.
+    """
+    for module in addon_utils.modules():
+        if module.__name__ == "cycles":
+            glass = Path(module.__file__).with_name("shader") / "node_glass_bsdf.oso"
+            if glass.is_file():
+                return not _TURNED_BY_SHADER.search(glass.read_text(encoding="utf-8"))
+    return None
+
+
+def shows_front_ior() -> bool:
+    """Tell whether a material that is rendered by this Blender finds that closures take an index as met from the front."""
+    return any(name in getattr(bpy.types, owner).bl_rna.properties for owner, name in FRONT_IOR_SIGNS.values())
 
 
 def settings_problem(scene: bpy.types.Scene) -> str | None:
@@ -54,11 +100,12 @@ def settings_problem(scene: bpy.types.Scene) -> str | None:
 
 
 def achromatic_reason(scene: bpy.types.Scene) -> str | None:
-    """Return why dispersing media of a scene would render without their colours, or None if they would not."""
+    """Return why dispersing media of a scene would render without their own colours, or None if they would not."""
     if not scene.render.use_motion_blur:
+        instead = "show Cycles' own colours, not their spectrum's" if shows_front_ior() else "look as they do at 587.6 nm"
         return (
             f"scene {scene.name!r} renders without motion blur, whose random time carries the wavelength of a path; media "
-            "look as they do at 587.6 nm. Press Prepare Scene, which switches it on with a shutter of 0, so that nothing blurs"
+            f"{instead}. Press Prepare Scene, which switches it on with a shutter of 0, so that nothing blurs"
         )
     if scene.render.motion_blur_shutter == 0.0 and not _even_shutter(scene):
         return (

@@ -16,8 +16,10 @@ import bpy
 from .node_group import (
     EMITTER_OUTPUT,
     LAMPS_OUTPUT,
-    LIGHT_FILE,
     LAMP_OUTPUTS,
+    LIGHT_FILE,
+    LIGHTS_VERSION_PROPERTY,
+    MATERIAL_VERSION,
     add_script,
     ensure_lights,
     find_lights,
@@ -121,12 +123,23 @@ def listed_lamps() -> list[bpy.types.Object | None]:
 
 def update_lights(scene: bpy.types.Scene) -> bool:
     """Make the group hold the lamps that the lobes carry in a scene; tell whether it changed."""
-    wanted = carried_lamps(scene)
+    return _list_lamps(carried_lamps(scene))
+
+
+def refresh_lights() -> bool:
+    """Make the group hold the lamps that it holds in the way of this version; tell whether it changed."""
+    return find_lights() is not None and _list_lamps([lamp for lamp in listed_lamps() if lamp is not None])
+
+
+def _list_lamps(wanted: list[bpy.types.Object]) -> bool:
     tree = ensure_lights()
-    if listed_lamps() == wanted and all(
-        node.inputs["Type"].default_value == _type(lamp.data) for lamp, node in zip(wanted, _script_nodes(tree))
+    if (
+        tree.get(LIGHTS_VERSION_PROPERTY) == MATERIAL_VERSION
+        and listed_lamps() == wanted
+        and all(node.inputs["Type"].default_value == _type(lamp.data) for lamp, node in zip(wanted, _script_nodes(tree)))
     ):
         return False
+    tree[LIGHTS_VERSION_PROPERTY] = MATERIAL_VERSION
     tree.animation_data_clear()
     tree.nodes.clear()
     outputs = tree.nodes.new("NodeGroupOutput")

@@ -12,7 +12,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from .compatibility import UnsupportedError
+from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
 from .contacts import FACES, PROBE
 from .dispersion import mean_cauchy_distances
 from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS, Parameter
@@ -28,9 +28,19 @@ MATERIAL_SLOTS = 8
 CYCLES_OUTPUT = "Surface"
 VOLUME_OUTPUT = "Volume"
 PREVIEW_OUTPUT = "Preview"
+
+MATERIAL_VERSION = 2
+"""Of the group and of all that stands in a file with it. A release that changes any of it counts on."""
+
+FRONT_IOR_VERSION = 2
+"""The first whose shader knows both ways in which Cycles' closures take an index."""
+
+VERSION_PROPERTY = "nd_version"
 SOURCE_HASH = "nd_source"
+"""What groups of version 1 carry instead of a number."""
 
 LIGHTS_NAME = "Nested Dielectric Lights"
+LIGHTS_VERSION_PROPERTY = "nd_lights_version"
 LAMP_OUTPUTS = {"Kind": "FLOAT", "Total": "FLOAT"} | dict.fromkeys(
     ("Centre", "Axis", "EdgeX", "EdgeY", "Shape", "Strength", "Carried"), "VECTOR"
 )
@@ -65,6 +75,7 @@ TABLE_SOCKET = "Spectral Table"
 MEANS_SOCKET = "Spectral Table Means"
 TABLES_NODE = "Spectral Tables"
 COORDINATE_NODE = "Spectral Coordinate"
+DISPERSER_NODE = "Cycles Dispersion"
 
 LEAST_PREVIEW_IOR = 1.2
 """Keeps bubbles, whose index is that of air, in sight in EEVEE."""
@@ -122,24 +133,36 @@ material.
 
 
 def ensure_group() -> bpy.types.NodeTree:
-    """Return this file's group, made on first use.
+    """Return this file's group of this version, made on first use.
 
-    A group of the same name that was built from other shader source (an older file's) is left to the materials that
-    use it. Raises :class:`~nested_dielectric.compatibility.UnsupportedError` when this Blender compiles no OSL; nothing
-    has been made then.
+    A group of another version is left to the materials that use it. Raises
+    :class:`~nested_dielectric.compatibility.UnsupportedError` when this Blender compiles no OSL; nothing has been made
+    then.
     """
-    sources = {name: inlined_source(name) for name in (SHADER_FILE, COORDINATE_FILE, LIGHT_FILE)}
-    version = hashlib.sha256(f"{sources}{SOCKETS}{_ANALYSIS_SOCKETS}".encode()).hexdigest()
-    for tree in bpy.data.node_groups:
-        if tree.get(SOURCE_HASH) == version and tree.library is None:
-            return tree
-    scripts = {name: make_script(name, sources[name]) for name in (SHADER_FILE, COORDINATE_FILE)}
+    found = find_group()
+    if found is not None:
+        return found
+    scripts = {name: make_script(name, inlined_source(name)) for name in (SHADER_FILE, COORDINATE_FILE)}
     tree = bpy.data.node_groups.new(GROUP_NAME, "ShaderNodeTree")
-    tree[SOURCE_HASH] = version
+    tree[VERSION_PROPERTY] = MATERIAL_VERSION
     tree.description = "A dielectric that knows the media it touches"
     _add_sockets(tree)
     _add_nodes(tree, scripts)
     return tree
+
+
+def find_group() -> bpy.types.NodeTree | None:
+    """Return this file's group of this version, or None if there is none yet."""
+    groups = (tree for tree in bpy.data.node_groups if tree.library is None)
+    return next((tree for tree in groups if group_version(tree) == MATERIAL_VERSION), None)
+
+
+def group_version(tree: bpy.types.NodeTree | None) -> int | None:
+    """Return which version of the material a group is, or None if it is another group."""
+    if tree is None or tree.bl_idname != "ShaderNodeTree":
+        return None
+    version = tree.get(VERSION_PROPERTY, 1 if SOURCE_HASH in tree else None)
+    return version if isinstance(version, int) else None
 
 
 @dataclass(frozen=True)
@@ -180,6 +203,7 @@ def ensure_lights() -> bpy.types.NodeTree:
     tree = find_lights()
     if tree is None:
         tree = bpy.data.node_groups.new(LIGHTS_NAME, "ShaderNodeTree")
+        tree[LIGHTS_VERSION_PROPERTY] = MATERIAL_VERSION
         tree.description = "Lights that direct refraction and direct reflection carry; made by Prepare"
         for name, kind in (LAMP_OUTPUTS | {EMITTER_OUTPUT: "SHADER", LAMPS_OUTPUT: "INT"}).items():
             tree.interface.new_socket(name, in_out="OUTPUT", socket_type=_SOCKET_TYPES[kind])
@@ -302,7 +326,9 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     kinds |= {osl_name: "INT" if kind == "BOOL" else kind for osl_name, (_, kind) in told.items()}
     kinds |= {
         "Requests": "COLOR",
+        "FrontIOR": "INT",
         "CountsPortals": "SHADER",
+        "Disperses": "SHADER",
         "Emitter": "SHADER",
         "Lamps": "INT",
         **{f"Lamp{name}": kind for name, kind in LAMP_OUTPUTS.items()},
@@ -325,8 +351,12 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         links.new(inputs.outputs[name], script.inputs[osl_name])
     spectral = _view_layer_attribute(tree, "render.use_motion_blur").outputs["Fac"]
     coefficients, absorbs = _absorption_coefficients(tree, inputs)
-    links.new(_requests(tree, inputs, spectral, absorbs), script.inputs["Requests"])
+    front_ior = _takes_front_ior(tree)
+    split_by_closures = _math(tree, "MULTIPLY", inputs.outputs["Disperse"], front_ior)
+    curves_matter = _math(tree, "MAXIMUM", spectral, split_by_closures)
+    links.new(_requests(tree, inputs, curves_matter, absorbs), script.inputs["Requests"])
     links.new(spectral, script.inputs["Spectral"])
+    links.new(front_ior, script.inputs["FrontIOR"])
     table = inputs.outputs[TABLE_SOCKET]
     tables = _spectral_tables(tree, table, scripts[COORDINATE_FILE])
     links.new(table, script.inputs["Table"])
@@ -345,6 +375,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     alarm = nodes.new("ShaderNodeBsdfDiffuse")
     alarm.inputs["Color"].default_value = (1.0, 0.0, 1.0, 1.0)
     links.new(nodes.new("ShaderNodeBsdfRayPortal").outputs[0], script.inputs["CountsPortals"])
+    links.new(_disperser(tree, inputs), script.inputs["Disperses"])
     running = _mix(tree, script.outputs["Running"], alarm.outputs[0], script.outputs["BSDF"])
     running.label = "Magenta where OSL does not run"
     links.new(running.outputs[0], outputs.inputs[CYCLES_OUTPUT])
@@ -407,6 +438,32 @@ def _view_layer_attribute(tree: bpy.types.NodeTree, path: str) -> bpy.types.Shad
     attribute.attribute_type = "VIEW_LAYER"
     attribute.attribute_name = path
     return attribute
+
+
+def _takes_front_ior(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+    """1 where Cycles' closures take an index as it is met from the front, and turn it on back faces themselves.
+
+    A file that is rendered without the extension can only tell by what else came with that Blender: an attribute that is
+    not there has an alpha of 0.
+    """
+    alphas = (_view_layer_attribute(tree, path).outputs["Alpha"] for path in FRONT_IOR_SIGNS)
+    return _math(tree, "MAXIMUM", *alphas)
+
+
+def _disperser(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
+    """What makes Cycles split light in closures that ask for it, folded away where the medium does not disperse."""
+    disperser = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    disperser.name = disperser.label = DISPERSER_NODE
+    arm_dispersion(tree)
+    return disperser.outputs[0]
+
+
+def arm_dispersion(tree: bpy.types.NodeTree) -> None:
+    """Let Cycles' closures split light, which Blender 5.2 and files from it do not know of."""
+    socket = tree.nodes[DISPERSER_NODE].inputs.get("Transmission Dispersion Scale")
+    if socket is not None and socket.default_value != 1.0:
+        socket.default_value = 1.0
+        tree.nodes[DISPERSER_NODE].inputs["Transmission Weight"].default_value = 1.0
 
 
 def _ensure_socket(sockets: bpy.types.NodeInputs, kind: str, name: str) -> None:
@@ -531,7 +588,7 @@ def _menu(tree: bpy.types.NodeTree, source: bpy.types.NodeSocket, parameter: Par
 
 
 def _requests(
-    tree: bpy.types.NodeTree, inputs: bpy.types.Node, spectral: bpy.types.NodeSocket, absorbs: bpy.types.NodeSocket
+    tree: bpy.types.NodeTree, inputs: bpy.types.Node, curves_matter: bpy.types.NodeSocket, absorbs: bpy.types.NodeSocket
 ) -> bpy.types.NodeSocket:
     """One colour that depends on every attribute neighbours read of an object, so that Cycles exports them.
 
@@ -542,7 +599,7 @@ def _requests(
     math = partial(_math, tree)
     model = inputs.outputs["Dispersion Model"]
     curve = {
-        name: math("MULTIPLY", math("COMPARE", model, float(index), 0.5), spectral)
+        name: math("MULTIPLY", math("COMPARE", model, float(index), 0.5), curves_matter)
         for index, name in enumerate(("Abbe", "Sellmeier B"))
     }
     # JF's also moves the index of white light.
@@ -608,6 +665,7 @@ def _arrange(tree: bpy.types.NodeTree) -> None:
         "ShaderNodeBsdfDiffuse": 2,
         "ShaderNodeLayerWeight": 1,
         "ShaderNodeBsdfTransparent": 2,
+        "ShaderNodeBsdfPrincipled": 2,
         "ShaderNodeBsdfRayPortal": 2,
         "ShaderNodeBsdfAnisotropic": 2,
         "ShaderNodeScript": 2,

@@ -24,6 +24,7 @@ from .passes import add_passes
 from .preparation import prepare
 from .presets import load_preset, preset_names
 from .spectra import DISTRIBUTIONS, GAMUTS, SpectrumError, illuminant_names
+from .versions import outdated_materials, update_materials
 
 LAMP_CARRIERS = (
     Choice(
@@ -379,6 +380,33 @@ class Prepare(bpy.types.Operator):
         return {"FINISHED"}
 
 
+class UpdateMaterials(bpy.types.Operator):
+    """Bring materials that another version of the extension made, and copies that an append made, to this version. Values,
+    links, drivers and keyframes stay
+    """
+
+    bl_idname = "nested_dielectric.update_materials"
+    bl_label = "Update Materials"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not outdated_materials():
+            cls.poll_message_set("All materials are of this version")
+            return False
+        return _supported(cls)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            changes = update_materials()
+        except UnsupportedError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        for change in changes:
+            self.report({"INFO"}, change)
+        return {"FINISHED"}
+
+
 class LampCarrier(bpy.types.Operator):
     """Let lobes or rays bring the light of the selected lamps, or of all if none is selected, through media"""
 
@@ -507,6 +535,7 @@ CLASSES = (
     SellmeierIor,
     Spectrum,
     Prepare,
+    UpdateMaterials,
     LampCarrier,
     ShadowCaustics,
     AddPasses,

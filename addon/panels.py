@@ -9,7 +9,7 @@ import bpy.utils.previews
 import numpy as np
 
 from .analysis import last_found
-from .compatibility import achromatic_reason, blender_problem, settings_problem
+from .compatibility import achromatic_reason, blender_note, blender_problem, settings_problem, shows_front_ior
 from .dispersion import LINE_C, LINE_D, LINE_F, abbe_number, material_ior
 from .lights import LOBE, NOTHING, RAYS, light_carriers
 from .materials import dielectric_node, get_parameter, material_table, medium_material, spectrum_settings
@@ -28,12 +28,14 @@ from .operators import (
     SellmeierIor,
     ShadowCaustics,
     Spectrum,
+    UpdateMaterials,
     active_medium,
     coefficients_ior,
 )
 from .parameters import BY_KEYWORD, DISPERSION_MODELS, PRIORITY_PROPERTY
 from .spectra import DISTRIBUTIONS, GAMUTS, preview
 from .spectral_images import digest
+from .versions import outdated_materials, version_problems
 
 MODEL_SOCKETS = {
     "ABBE": ("ior", "abbe"),
@@ -138,9 +140,24 @@ def draw(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 def draw_problem(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Why nothing would render as it should, in as many lines as it takes, and the button that mends the scene."""
     problem = blender_problem() or settings_problem(context.scene)
+    note = blender_note()
     if problem:
         draw_alert(layout, context, problem)
+    elif note:
+        draw_text(layout, context, note, "INFO")
+    draw_versions(layout, context)
     layout.operator(Prepare.bl_idname, icon="CHECKMARK")
+
+
+def draw_versions(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Materials of another version and copies, and the button that updates them; what cannot be updated here."""
+    outdated = outdated_materials()
+    if outdated:
+        text = f"From another version, or a copy: {', '.join(outdated)}"
+        draw_text(layout, context, textwrap.shorten(text, 200, placeholder=" ..."), "FILE_REFRESH")
+        layout.operator(UpdateMaterials.bl_idname, icon="FILE_REFRESH")
+    for problem in version_problems():
+        draw_alert(layout, context, str(problem))
 
 
 def draw_alert(layout: bpy.types.UILayout, context: bpy.types.Context, text: str) -> None:
@@ -215,7 +232,8 @@ def draw_dispersion(layout: bpy.types.UILayout, context: bpy.types.Context) -> N
         reason = achromatic_reason(context.scene)
         if reason is not None:
             draw_alert(layout, context, reason)
-        draw_text(layout, context, "The viewport shows it as at 587.6 nm; see its colours in a render", "INFO")
+        viewport = "Cycles' own colours for it, in daylight" if shows_front_ior() else "it as at 587.6 nm"
+        draw_text(layout, context, f"The viewport shows {viewport}; see its spectrum's colours in a render", "INFO")
 
     model = get_parameter(node, BY_KEYWORD["dispersion_model"])
     buttons = layout.row(align=True)

@@ -54,11 +54,14 @@ def add_passes(scene: bpy.types.Scene) -> tuple[str, ...]:
     for layer in layers:
         changes += _turn_on_passes(layer)
     changes += _ensure_compositor(scene, layers)
-    tree = scene.compositing_node_group
-    if not tree.is_editable:
-        return (*changes, f"{tree.name!r} belongs to a library, so no passes are written; make it local")
+    trees = compositors(scene)
+    if not trees:
+        return tuple(changes)
+    tree = next((tree for tree in trees if tree.is_editable), None)
+    if tree is None:
+        return (*changes, f"{trees[0].name!r} belongs to a library, so no passes are written; make it local")
     for layer in layers:
-        if _writer(tree, scene, layer) is None:
+        if all(_writer(each, scene, layer) is None for each in trees):
             path = _add_nodes(tree, scene, layer, alone=len(layers) == 1)
             changes.append(f"View Layer {layer.name}: {', '.join(PASSES)} go to {path}")
     return tuple(changes)
@@ -107,16 +110,39 @@ def _turn_on_passes(layer: bpy.types.ViewLayer) -> list[str]:
     return changes
 
 
+def compositors(scene: bpy.types.Scene) -> list[bpy.types.CompositorNodeTree]:
+    """Return the groups of nodes that a scene's renders go through: from Blender 5.3 on there may be several."""
+    if hasattr(scene, "compositor_effects"):
+        return [effect.node_group for effect in scene.compositor_effects if effect.enable_for_render and effect.node_group]
+    return [] if scene.compositing_node_group is None else [scene.compositing_node_group]
+
+
+def _has_compositor(scene: bpy.types.Scene) -> bool:
+    if hasattr(scene, "compositor_effects"):
+        return any(effect.node_group is not None for effect in scene.compositor_effects)
+    return scene.compositing_node_group is not None
+
+
+def add_compositor(scene: bpy.types.Scene, tree: bpy.types.CompositorNodeTree) -> None:
+    """Let a scene's renders go through a group of nodes."""
+    if hasattr(scene, "compositor_effects"):
+        scene.compositor_effects.new(tree.name).node_group = tree
+    else:
+        scene.compositing_node_group = tree
+
+
 def _ensure_compositor(scene: bpy.types.Scene, layers: list[bpy.types.ViewLayer]) -> list[str]:
     """Give a scene that has no compositing nodes those that leave its picture as it is."""
-    if scene.compositing_node_group is not None:
-        if scene.render.use_compositing:
-            return []
+    if _has_compositor(scene):
         # Switched on, the artist's own nodes would change the picture.
-        return ["Output > Post Processing > Compositing is off, so no passes are written; switch it on"]
+        if not scene.render.use_compositing:
+            return ["Output > Post Processing > Compositing is off, so no passes are written; switch it on"]
+        if not compositors(scene):
+            return ["No compositor effect is on in renders, so no passes are written; switch one on"]
+        return []
     tree = bpy.data.node_groups.new("Compositor Nodes", "CompositorNodeTree")
     tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-    scene.compositing_node_group = tree
+    add_compositor(scene, tree)
     picture = _render_layers(tree, scene, layers[0])
     output = tree.nodes.new("NodeGroupOutput")
     output.location = (300.0, 0.0)

@@ -16,6 +16,7 @@ from .materials import refresh_spectrum
 from .media import dispersing_materials, media
 from .parameters import ParameterError
 from .parting import part_coincident
+from .versions import mend_materials, version_problems
 
 AT_LEAST = {
     "max_bounces": 64,
@@ -55,7 +56,7 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
     """
     require_blender()
-    changes: list[str] = []
+    changes = list(mend_materials())
     ensure = partial(_ensure, changes)
     ensure(scene.render, "engine", "CYCLES", "Render Engine")
     ensure(scene.cycles, "shading_system", True, "Open Shading Language")
@@ -65,7 +66,7 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
         ensure(scene.cycles, attribute, max(least, getattr(scene.cycles, attribute)), label)
     if media(scene) and update_lights(scene):
         changes.append("Lamps of direct refraction and reflection: listed again")
-    problems = []
+    problems = version_problems()
     dispersing = dispersing_materials(scene)
     if dispersing:
         _ensure_random_time(changes, scene)

@@ -8,8 +8,8 @@ from contextlib import ExitStack
 
 import bpy
 
-from . import analysis, operators, panels
-from .compatibility import blender_problem, settings_problem
+from . import analysis, operators, panels, versions
+from .compatibility import blender_note, blender_problem, settings_problem
 from .media import media
 
 REST = 0.3
@@ -47,7 +47,9 @@ def register() -> None:
             (bpy.app.handlers.render_init, warn_before_render),
             (bpy.app.handlers.render_init, analyse_before_render),
             (bpy.app.handlers.depsgraph_update_post, analyse_after_update),
+            (bpy.app.handlers.load_post, mend_materials),
             (bpy.app.handlers.load_post, analyse_after_load),
+            (bpy.app.handlers.blend_import_post, mend_materials),
             (bpy.app.handlers.save_pre, analyse_what_is_left),
             (bpy.app.handlers.undo_post, forget_shapes),
             (bpy.app.handlers.redo_post, forget_shapes),
@@ -61,9 +63,9 @@ def register() -> None:
         undo.callback(bpy.utils.unregister_cli_command, command)
 
         _registered = undo.pop_all()
-    problem = blender_problem()
-    if problem:
-        print(f"Nested Dielectric: {problem}", file=sys.stderr)
+    text = blender_problem() or blender_note()
+    if text:
+        print(f"Nested Dielectric: {text}", file=sys.stderr)
 
 
 def unregister() -> None:
@@ -137,6 +139,19 @@ def is_at_work() -> bool:
         for window in bpy.context.window_manager.windows
         for operator in window.modal_operators
     )
+
+
+@bpy.app.handlers.persistent
+def mend_materials(*_: object) -> None:
+    """Make materials right that a file, or what is appended from one, has from a Blender or an extension to which this
+    Blender's Cycles was unknown.
+    """
+    if blender_problem():
+        return
+    for change in versions.mend_materials():
+        print(f"Nested Dielectric: updated {change}", file=sys.stderr)
+    for problem in versions.version_problems():
+        print(f"Nested Dielectric: {problem}", file=sys.stderr)
 
 
 @bpy.app.handlers.persistent

@@ -25,3 +25,9 @@ def inlined_source(name: str, folder: Path = OSL_FOLDER) -> str:
         return _INCLUDE.sub(lambda match: inline(match.group(1)), text)
 
     return inline(name)
+
+
+def without_comments(source: str) -> str:
+    """Return OSL source without its comments and blank lines, which no picture depends on."""
+    code = re.sub(r"/\*.*?\*/|//[^\n]*", "", source, flags=re.DOTALL)
+    return "\n".join(line.rstrip() for line in code.splitlines() if line.strip())

@@ -74,8 +74,8 @@ float ior_at(float ior, DispersionCurve d, float wavelength)
   return ior;
 }
 
-/* The index of a medium. `spectral`: paths of this render may have a wavelength; wavelength: 0 for white light. */
-Index medium_index(float ior, DispersionCurve d, int spectral, float wavelength)
+/* The index of a medium. `splits`: how it spreads matters; wavelength: 0 for white light. */
+Index medium_index(float ior, DispersionCurve d, int splits, float wavelength)
 {
   Index n;
   /* A medium of JF's that splits no light has its index as it was typed, as there. */
@@ -83,7 +83,7 @@ Index medium_index(float ior, DispersionCurve d, int spectral, float wavelength)
   n.at_path = n.white;
   n.slope = 0.0;
   n.regular = 1;
-  if (spectral) {
+  if (splits) {
     n.slope = (ior_at(ior, d, LINE_F) - ior_at(ior, d, LINE_C)) / (cauchy_distance(LINE_F) - cauchy_distance(LINE_C));
     /* No glass is further off at the ends; what is not a number is not close either. */
     n.regular = abs(ior_at(ior, d, SHORTEST) - n.white - n.slope * cauchy_distance(SHORTEST)) < 0.05 &&
@@ -98,4 +98,15 @@ Index medium_index(float ior, DispersionCurve d, int spectral, float wavelength)
 float eta_at(Index from, Index to, float distance)
 {
   return (to.white + to.slope * distance) / max(from.white + from.slope * distance, 1e-3);
+}
+
+/* The ratio of two indices of white light, and how far it spreads over the spectrum as a number of Abbe's kind: both are
+ * near linear in the Cauchy distance. A ratio of 1 has no such number, so it is moved by what bends no light visibly. */
+float dispersing_ratio(Index outer, Index inner, output float inverse_abbe)
+{
+  float ratio = eta_at(outer, inner, 0.0);
+  if (abs(ratio - 1.0) < 1e-4)
+    ratio = 1.0 + 1e-4;
+  inverse_abbe = (eta_at(outer, inner, cauchy_distance(LINE_F)) - eta_at(outer, inner, cauchy_distance(LINE_C))) / (ratio - 1.0);
+  return ratio;
 }

@@ -20,8 +20,8 @@ struct Interface {
  * leaving, those just behind it, so of two coincident faces one is valid and one is not whichever is met first.
  *
  * `always_air`: the analysis tells so of all objects of the material, which leaves out most of this; looks_ahead: the
- * extent of the media matters. */
-Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int looks_ahead, int spectral, float wavelength)
+ * extent of the media matters; `curves`: see CURVES_NONE. */
+Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int looks_ahead, int curves, float wavelength)
 {
   vector away = backfacing() ? -Ng : Ng;
   Medium inner = own;
@@ -43,16 +43,13 @@ Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int
   else {
     Outside told = told_of_all;
     int outside = told_outside(told);
-    /* Light of one wavelength needs the medium's whole curve, and a look ahead all that holds the point. */
-    if (outside == OUTSIDE_MEDIUM && (spectral || (looks_ahead && told.medium.absorbs)))
+    /* Split light needs the medium's whole curve, and a look ahead all that holds the point. */
+    if (outside == OUTSIDE_MEDIUM && (curves == CURVES_ALL || (looks_ahead && told.medium.absorbs)))
       outside = OUTSIDE_UNKNOWN;
     if (outside == OUTSIDE_MEDIUM)
       outer = told.medium;
     if (outside == OUTSIDE_WINNER)
       s.valid = 0;
-    int curves = CURVES_NONE;
-    if (spectral)
-      curves = (own.disperses || wavelength > 0.0) ? CURVES_ALL : CURVES_DISPERSING;
     /* What a single priority decides is checked, too. */
     int unknown = outside == OUTSIDE_UNKNOWN;
     int checks = ((!unknown || told.level >= 0.0) && spot_check()) ? 2 : 0;

@@ -103,7 +103,7 @@ float hit_priority(output int slot)
 }
 
 /* Which media's dispersion a surface needs. */
-#define CURVES_NONE 0       /* no path has a wavelength: only what moves the index of white light */
+#define CURVES_NONE 0       /* no light is split: only what moves the index of white light */
 #define CURVES_DISPERSING 1 /* white light that may be split: only of media that split it */
 #define CURVES_ALL 2        /* light with a wavelength, or about to get one */
 
@@ -153,7 +153,7 @@ Medium hit_medium(float priority, output int slot, int curves, float wavelength)
     float value[4];
     getmessage("trace", iors[slot], value);
     DispersionCurve d = hit_dispersion(slot, curves);
-    m.ior = medium_index(value[0], d, curves != CURVES_NONE, wavelength);
+    m.ior = medium_index(value[0], d, curves == CURVES_ALL || (curves != CURVES_NONE && d.disperses), wavelength);
     m.disperses = d.disperses;
     if (getmessage("trace", transmittances[slot], value)) {
       color left = color(value[0], value[1], value[2]);

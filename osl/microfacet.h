@@ -4,18 +4,6 @@
 #include "lamp.h"
 #include "lobes.h"
 
-/* Smith's masking function Lambda (Heitz 2014, equations 68, 69, 72), where `a2` is the squared product of the width and
- * the tangent of the direction's angle. */
-float masking(int distribution, float a2)
-{
-  if (distribution != DISTRIBUTION_BECKMANN)
-    return 0.5 * (sqrt(1.0 + a2) - 1.0);
-  if (a2 < 0.39)
-    return 0.0;
-  float a = 1.0 / sqrt(a2);
-  return (1.0 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a);
-}
-
 /* Density of microfacet normals (Walter et al. 2007; Beckmann and Spizzichino 1963), for a normal in the frame of
  * tangent, bitangent and surface normal. */
 float normals_density(Lobe lobe, vector h)
@@ -26,11 +14,6 @@ float normals_density(Lobe lobe, vector h)
   float slope2 = (h[0] * h[0] / (lobe.alpha_x * lobe.alpha_x) + h[1] * h[1] / (lobe.alpha_y * lobe.alpha_y)) / z2;
   float scale = 1.0 / (M_PI * lobe.alpha_x * lobe.alpha_y * z2 * z2);
   return (lobe.distribution == DISTRIBUTION_BECKMANN) ? scale * exp(-slope2) : scale / ((1.0 + slope2) * (1.0 + slope2));
-}
-
-float width_towards(Lobe lobe, vector w)
-{
-  return (lobe.alpha_x * lobe.alpha_x * w[0] * w[0] + lobe.alpha_y * lobe.alpha_y * w[1] * w[1]) / (w[2] * w[2]);
 }
 
 /* What a rough surface makes of light from a lamp. */

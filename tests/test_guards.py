@@ -21,9 +21,8 @@ def ball_in_furnace() -> bpy.types.Object:
 @pytest.mark.parametrize(
     "version, with_osl, words",
     [
-        ((5, 0, 1), True, "too old"),
+        ((5, 1, 2), True, "too old"),
         ((4, 5, 0), True, "too old"),
-        ((5, 3, 0), True, "newer than this extension"),
         ((5, 2, 3), False, "without Open Shading Language"),
     ],
 )
@@ -34,7 +33,34 @@ def test_an_unsuitable_blender_is_named_with_the_remedy(version, with_osl, words
 
 
 def test_this_blender_is_suitable():
-    assert compatibility.blender_problem() is None
+    assert compatibility.blender_problem() is None and compatibility.blender_note() is None
+
+
+def test_a_newer_blender_that_takes_indices_as_known_works_with_a_note():
+    assert compatibility.blender_problem((5, 9, 0)) is None
+    assert "newer than this extension was tested with" in compatibility.blender_note((5, 9, 0))
+
+
+@pytest.mark.parametrize("answer", [None, "the other way"])
+def test_a_blender_whose_way_with_indices_files_cannot_tell_is_refused(monkeypatch, answer):
+    if answer is not None:
+        answer = not compatibility.takes_front_ior()
+    monkeypatch.setattr(compatibility, "takes_front_ior", lambda: answer)
+    assert "in a way that files cannot tell" in compatibility.blender_problem((5, 9, 0))
+    new_scene()
+    with pytest.raises(nd.UnsupportedError):
+        nd.prepare(bpy.context.scene)
+
+
+def test_a_material_that_finds_nothing_of_a_newer_osl_refuses(monkeypatch):
+    """A Blender of the future may have lost what tells its way with indices: no picture may be guessed."""
+    signs = dict.fromkeys(("nothing", "nothing.more"), ("Scene", "nothing"))
+    monkeypatch.setattr(node_group, "FRONT_IOR_SIGNS", signs)
+    source = node_group.inlined_source
+    monkeypatch.setattr(node_group, "inlined_source", lambda name: source(name).replace(">= 11600", ">= 11000"))
+    ball_in_furnace()
+    red, green, blue = render(16).mean(axis=(0, 1))
+    assert green < 0.01 and red > 0.5 and blue > 0.5
 
 
 def test_preparing_a_scene_in_an_unsuitable_blender_raises_and_changes_nothing(monkeypatch):

@@ -8,7 +8,7 @@ import pytest
 
 import nested_dielectric as nd
 from nested_dielectric.lights import update_lights
-from nested_dielectric.passes import PASSES
+from nested_dielectric.passes import PASSES, add_compositor, compositors
 from scenes import (
     add,
     add_camera,
@@ -139,16 +139,17 @@ def test_passes_are_added_once(tmp_path):
     changes = nd.add_passes(scene)
     assert "Light Group of Ball: Media" in changes
     assert changes[-1].endswith(f"go to {tmp_path / 'shot_passes'}")
-    nodes = len(scene.compositing_node_group.nodes), len(bpy.data.node_groups)
+    (tree,) = compositors(scene)
+    nodes = len(tree.nodes), len(bpy.data.node_groups)
     assert nd.add_passes(scene) == ()
-    assert (len(scene.compositing_node_group.nodes), len(bpy.data.node_groups)) == nodes
+    assert compositors(scene) == [tree] and (len(tree.nodes), len(bpy.data.node_groups)) == nodes
 
 
 def test_passes_leave_an_existing_compositor_and_its_picture_alone(tmp_path):
     scene = glass_before_stripes(8)
     tree = bpy.data.node_groups.new("Artist's", "CompositorNodeTree")
     tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-    scene.compositing_node_group = tree
+    add_compositor(scene, tree)
     source, invert = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeInvert")
     output = tree.nodes.new("NodeGroupOutput")
     tree.links.new(source.outputs["Image"], invert.inputs["Color"])
@@ -211,7 +212,7 @@ def test_passes_need_cycles():
     assert nd.add_passes(scene) == (
         "scene 'Scene' renders with BLENDER_EEVEE; its passes are Cycles': prepare it first",
     )
-    assert scene.compositing_node_group is None and not scene.objects["Ball"].lightgroup
+    assert not compositors(scene) and not scene.objects["Ball"].lightgroup
 
 
 def test_passes_say_what_they_cannot_part():
@@ -228,10 +229,26 @@ def test_passes_say_what_they_cannot_part():
 
 def test_compositing_that_the_artist_switched_off_stays_off():
     scene = glass_before_stripes(8)
-    scene.compositing_node_group = bpy.data.node_groups.new("Artist's", "CompositorNodeTree")
+    add_compositor(scene, bpy.data.node_groups.new("Artist's", "CompositorNodeTree"))
     scene.render.use_compositing = False
     assert any("Compositing is off" in change for change in nd.add_passes(scene))
     assert not scene.render.use_compositing
+
+
+@pytest.mark.skipif(not hasattr(bpy.types.Scene, "compositor_effects"), reason="this Blender has one compositor alone")
+def test_passes_go_into_an_effect_that_is_on_in_renders():
+    scene = glass_before_stripes(8)
+    trees = [bpy.data.node_groups.new(name, "CompositorNodeTree") for name in ("Off", "On")]
+    for tree in trees:
+        add_compositor(scene, tree)
+    scene.render.use_compositing = True
+    for effect in scene.compositor_effects:
+        effect.enable_for_render = False
+    assert any("No compositor effect is on" in change for change in nd.add_passes(scene))
+    assert not any(tree.nodes for tree in trees)
+    scene.compositor_effects[1].enable_for_render = True
+    assert nd.add_passes(scene) and trees[1].nodes and not trees[0].nodes
+    assert nd.add_passes(scene) == () and len(scene.compositor_effects) == 2
 
 
 def test_passes_come_with_the_file(tmp_path):

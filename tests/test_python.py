@@ -12,6 +12,8 @@ from nested_dielectric.materials import material_table
 from nested_dielectric.spectra import spectral_table
 from scenes import add, add_box, add_sphere, native, new_scene
 
+pytestmark = pytest.mark.quick
+
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -300,7 +302,9 @@ def test_the_shader_takes_exactly_the_tables_parameters():
         "AroundMedium",
         "AroundTransmittance",
         "Requests",
+        "FrontIOR",
         "CountsPortals",
+        "Disperses",
         "Emitter",
         "Lamps",
         "LampKind",

@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 
 import nested_dielectric as nd
-from nested_dielectric import lights, materials, media, operators, panels, registration, spectra
+from nested_dielectric import lights, materials, media, node_group, operators, panels, registration, spectra
 from nested_dielectric.parameters import BY_KEYWORD
+from nested_dielectric.passes import compositors
+
+pytestmark = pytest.mark.quick
 
 
 @pytest.fixture(autouse=True)
@@ -96,6 +99,12 @@ def texts(drawn):
     }
     labels = " ".join(keywords["text"] for name, _, keywords in drawn if name == "label")
     return labels, by_kind["prop"].keys(), by_kind["operator"]
+
+
+def labels_and_operators(drawn):
+    """All labels of a panel as one text, and which operators it offers."""
+    labels = " ".join(keywords["text"] for name, _, keywords in drawn if name == "label")
+    return labels, [arguments[0] for name, arguments, _ in drawn if name == "operator"]
 
 
 def in_blender():
@@ -456,10 +465,33 @@ def test_the_panel_offers_the_index_of_the_sellmeier_coefficients_where_ior_is_a
     assert "coefficients" not in labels and "Set IOR to 1.51680" not in buttons
 
 
+def test_the_panels_offer_to_update_materials_of_another_version(draw):
+    add_media(A=1)
+    update = operators.UpdateMaterials.bl_idname
+    for panel in (panels.SidebarPanel, panels.ObjectPanel):
+        assert update not in labels_and_operators(draw(panel))[1]
+    node = materials.dielectric_node(bpy.data.objects["A"].active_material)
+    node.node_tree = node.node_tree.copy()
+    node.node_tree[node_group.VERSION_PROPERTY] = 1
+    for panel in (panels.SidebarPanel, panels.ObjectPanel):
+        labels, buttons = labels_and_operators(draw(panel))
+        assert "From another version, or a copy: Water" in labels and update in buttons
+    bpy.ops.nested_dielectric.update_materials()
+    assert node_group.group_version(node.node_tree) == node_group.MATERIAL_VERSION
+    assert update not in labels_and_operators(draw(panels.SidebarPanel))[1]
+
+
+def test_the_panels_name_a_material_of_a_newer_version(draw):
+    add_media(A=1)
+    node_group.find_group()[node_group.VERSION_PROPERTY] = node_group.MATERIAL_VERSION + 1
+    labels, buttons = labels_and_operators(draw(panels.SidebarPanel))
+    assert "'Water' was made by a newer version" in labels and operators.UpdateMaterials.bl_idname not in buttons
+
+
 def test_the_panel_says_why_a_medium_that_disperses_shows_no_colours(draw, monkeypatch):
     _, node = add_dispersive()
     monkeypatch.setattr(panels, "achromatic_reason", lambda scene: f"scene {scene.name!r} has no colours")
-    viewport = "The viewport shows it as at 587.6 nm"
+    viewport = "The viewport shows"
     for disperse in (True, False):
         node.inputs["Disperse"].default_value = disperse
         labels, _, _ = texts(draw(panels.SidebarDispersionPanel))
@@ -559,7 +591,7 @@ def test_undo_takes_a_lamp_caustics_and_passes_back():
 
     def state():
         scene = bpy.context.scene
-        passes = scene.compositing_node_group is not None and scene.view_layers[0].use_pass_emit
+        passes = bool(compositors(scene)) and scene.view_layers[0].use_pass_emit
         return carriers()["Lamp"], scene.objects["A"].cycles.is_caustics_caster, passes
 
     assert state() == ("LOBE", True, True)

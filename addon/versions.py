@@ -1,0 +1,365 @@
+"""Materials that another version of the extension made, and the copies that an append makes: all are brought to one.
+
+A group of sockets is exchanged for another by the sockets' names, so that all that an artist set, linked, drove or keyframed
+stays, whatever came to stand between.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import bpy
+import numpy as np
+
+from . import analysis
+from .checks import Problem
+from .compatibility import require_blender, takes_front_ior
+from .lights import refresh_lights
+from .materials import dielectric_node, refresh_spectrum
+from .node_group import (
+    FRONT_IOR_VERSION,
+    MATERIAL_VERSION,
+    OFFSET_GROUP,
+    TABLE_SOCKET,
+    TABLES_NODE,
+    arm_dispersion,
+    ensure_group,
+    find_group,
+    group_version,
+    set_table,
+)
+from .parameters import ParameterError
+from .spectral_images import TABLES, read_rows
+
+
+def update_materials() -> tuple[str, ...]:
+    """Bring all materials of the open file to this version of the extension, and copies of what it keeps in a file to one.
+
+    Values, links, drivers and keyframes stay. What belongs to a library, or was made by a newer version, is left as it is.
+    Returns what was changed, in sentences; a second call changes nothing. Raises
+    :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot render the materials.
+    """
+    require_blender()
+    changes = []
+    outdated = list(_outdated_nodes())
+    if outdated:
+        leftovers = _Leftovers()
+        for node in outdated:
+            leftovers.note(node.node_tree)
+        moved = {}
+        for node in outdated:
+            before = group_version(node.node_tree)
+            places, lost = _exchange(node, ensure_group())
+            moved.setdefault(node.id_data, {}).update(places)
+            how = "one of several copies" if before == MATERIAL_VERSION else f"version {before}"
+            changes.append(f"{_owner(node.id_data).name}: was {how}")
+            changes += [f"{_owner(node.id_data).name}: {name!r} could not be kept" for name in lost]
+        _follow_sockets(moved)
+    if refresh_lights():
+        changes.append("Lamps of direct refraction and reflection: listed again")
+    if outdated:
+        leftovers.remove()
+    changes += _merge_offsets()
+    for tree in _local_groups():
+        arm_dispersion(tree)
+    if changes:
+        for scene in bpy.data.scenes:
+            if analysis.is_analysed(scene):
+                analysis.analyse(scene)
+    return tuple(changes)
+
+
+def mend_materials() -> tuple[str, ...]:
+    """Update materials if this Blender would show them wrong, as a file from another may have them; else let them be.
+
+    Returns what was changed, in sentences.
+    """
+    if any(map(_is_wrong_here, _local_groups(every_version=True))):
+        return update_materials()
+    for tree in _local_groups():
+        arm_dispersion(tree)
+    return ()
+
+
+def outdated_materials() -> list[str]:
+    """Return the names of what :func:`update_materials` would change the version or the copy of: materials and groups."""
+    return sorted({_owner(node.id_data).name for node in _outdated_nodes()})
+
+
+def version_problems() -> list[Problem]:
+    """Return what is wrong with the versions of materials and cannot be changed here."""
+    problems = []
+    for material in bpy.data.materials:
+        node = dielectric_node(material)
+        if node is None:
+            continue
+        if material.library is not None and _is_wrong_here(node.node_tree):
+            remedy = f"press Update Materials in {material.library.filepath!r} and save it"
+            problems.append(Problem(material.name, "comes from a file of an older version, which is wrong here", remedy))
+        elif (group_version(node.node_tree) or 0) > MATERIAL_VERSION:
+            problems.append(Problem(material.name, "was made by a newer version", "install that version of the extension"))
+    return problems
+
+
+def _is_wrong_here(tree: bpy.types.NodeTree) -> bool:
+    return (group_version(tree) or FRONT_IOR_VERSION) < FRONT_IOR_VERSION and bool(takes_front_ior())
+
+
+def _local_groups(every_version: bool = False) -> list[bpy.types.NodeTree]:
+    return [
+        tree
+        for tree in bpy.data.node_groups
+        if tree.library is None
+        and (version := group_version(tree)) is not None
+        and (every_version or version == MATERIAL_VERSION)
+    ]
+
+
+def _outdated_nodes() -> Iterator[bpy.types.ShaderNodeGroup]:
+    """Group nodes of the file's own materials and groups that show another group than this version's one."""
+    current = find_group()
+    groups = [tree for tree in bpy.data.node_groups if (group_version(tree) or MATERIAL_VERSION + 1) <= MATERIAL_VERSION]
+    if not any(_is_outdated(tree, current) for tree in groups):
+        return
+    for host in _shader_trees():
+        for node in host.nodes:
+            if node.type == "GROUP" and node.node_tree in groups and _is_outdated(node.node_tree, current):
+                yield node
+
+
+def _is_outdated(tree: bpy.types.NodeTree, current: bpy.types.NodeTree | None) -> bool:
+    return group_version(tree) < MATERIAL_VERSION or (tree.library is None and tree != current)
+
+
+def _shader_trees() -> Iterator[bpy.types.NodeTree]:
+    for material in bpy.data.materials:
+        if material.library is None and material.node_tree is not None:
+            yield material.node_tree
+    for tree in bpy.data.node_groups:
+        if tree.library is None and tree.bl_idname == "ShaderNodeTree" and group_version(tree) is None:
+            yield tree
+
+
+def _owner(tree: bpy.types.NodeTree) -> bpy.types.ID:
+    """The material that a tree is part of, or the tree itself where it is a group."""
+    if not tree.is_embedded_data:
+        return tree
+    return next(material for material in bpy.data.materials if material.node_tree == tree)
+
+
+# Exchanging a group ---------------------------------------------------------------------------------------------------
+
+
+def _exchange(node: bpy.types.ShaderNodeGroup, group: bpy.types.NodeTree) -> tuple[dict[str, str], list[str]]:
+    """Give a node another group. Return where the paths of its sockets have moved, and the names of what could not stay."""
+    links = node.id_data.links
+    table = _table(node)
+    names = [socket.name for socket in node.inputs]
+    values = {socket.name: _value(socket) for socket in node.inputs if hasattr(socket, "default_value")}
+    hidden = {socket.name for socket in (*node.inputs, *node.outputs) if socket.hide}
+    arriving = [(link.from_socket, link.to_socket.name, link.is_muted) for s in node.inputs for link in s.links]
+    leaving = [(link.from_socket.name, link.to_socket, link.is_muted) for s in node.outputs for link in s.links]
+
+    node.node_tree = group
+    for link in [link for socket in (*node.inputs, *node.outputs) for link in socket.links]:
+        links.remove(link)
+    lost = [name for name, value in values.items() if not _set_value(node.inputs.get(name), value)]
+    for source, name, muted in arriving:
+        lost += _join(links, source, node.inputs.get(name), name, muted)
+    for name, target, muted in leaving:
+        lost += _join(links, node.outputs.get(name), target, name, muted)
+    for socket in (*node.inputs, *node.outputs):
+        socket.hide = socket.name in hidden
+    if table is not None:
+        set_table(node, table)
+    else:
+        lost += _bake_again(_owner(node.id_data))
+    places = {name: place for place, name in enumerate(socket.name for socket in node.inputs)}
+    prefix = f'nodes["{bpy.utils.escape_identifier(node.name)}"].inputs'
+    moved = {f"{prefix}[{old}]": f"{prefix}[{places[name]}]" for old, name in enumerate(names) if name in places}
+    return {old: new for old, new in moved.items() if old != new}, lost
+
+
+def _table(node: bpy.types.ShaderNodeGroup) -> np.ndarray | None:
+    """The spectral table that a group node uses, or None if its file has lost it."""
+    holder = node.node_tree.nodes.get(TABLES_NODE)
+    if holder is None or holder.image is None or not len(holder.image.pixels) or TABLE_SOCKET not in node.inputs:
+        return None
+    rows = read_rows(holder.image)
+    return rows[min(node.inputs[TABLE_SOCKET].default_value, len(rows) - 1)]
+
+
+def _bake_again(owner: bpy.types.ID) -> list[str]:
+    """Give a material whose table is lost another; what could not be kept."""
+    if not isinstance(owner, bpy.types.Material) or dielectric_node(owner) is None:
+        return ["Spectrum"]
+    try:
+        refresh_spectrum(owner)
+    except ParameterError:
+        return ["Spectrum"]
+    return []
+
+
+def _value(socket: bpy.types.NodeSocket) -> Any:
+    value = socket.default_value
+    return value if isinstance(value, (int, float, str)) else tuple(value)
+
+
+def _set_value(socket: bpy.types.NodeSocket | None, value: Any) -> bool:
+    """Set a socket's value; False if there is no such socket, or it takes no such value."""
+    if socket is None or not hasattr(socket, "default_value"):
+        return False
+    try:
+        socket.default_value = value
+    except (TypeError, ValueError):
+        return False
+    return True
+
+
+def _join(
+    links: bpy.types.NodeLinks,
+    source: bpy.types.NodeSocket | None,
+    target: bpy.types.NodeSocket | None,
+    name: str,
+    muted: bool,
+) -> list[str]:
+    """Link two sockets; the name in a list if one of them is not there."""
+    if source is None or target is None:
+        return [name]
+    links.new(source, target).is_muted = muted
+    return []
+
+
+def _follow_sockets(moved: dict[bpy.types.NodeTree, dict[str, str]]) -> None:
+    """Let keyframes and drivers follow sockets to their new places: those of the trees, and drivers that read them."""
+    moved = {tree: places for tree, places in moved.items() if places}
+    if not moved:
+        return
+    seen: set[int] = set()
+    for tree, places in moved.items():
+        for curve in _curves(tree.animation_data):
+            if curve.as_pointer() not in seen:  # trees may share an action
+                seen.add(curve.as_pointer())
+                curve.data_path = _moved(curve.data_path, places)
+    prefixes = {(tree, ""): places for tree, places in moved.items()}
+    prefixes |= {(_owner(tree), "node_tree."): places for tree, places in moved.items() if tree.is_embedded_data}
+    for data in _all_data():
+        for curve in data.animation_data.drivers if data.animation_data else ():
+            for target in (target for variable in curve.driver.variables for target in variable.targets):
+                for (owner, prefix), places in prefixes.items():
+                    if target.id == owner and target.data_path.startswith(prefix):
+                        target.data_path = prefix + _moved(target.data_path.removeprefix(prefix), places)
+                        break
+
+
+def _moved(path: str, places: dict[str, str]) -> str:
+    for old, new in places.items():
+        if path.startswith(old):
+            return new + path.removeprefix(old)
+    return path
+
+
+def _curves(animation: bpy.types.AnimData | None) -> Iterator[bpy.types.FCurve]:
+    """The drivers and keyframes of one data-block, in its action and in strips."""
+    if animation is None:
+        return
+    yield from animation.drivers
+    actions = [(animation.action, animation.action_slot)]
+    actions += [(strip.action, strip.action_slot) for track in animation.nla_tracks for strip in track.strips]
+    for action, slot in actions:
+        if action is None or slot is None:
+            continue
+        for strip in (strip for layer in action.layers for strip in layer.strips):
+            bag = strip.channelbag(slot)
+            if bag is not None:
+                yield from bag.fcurves
+
+
+def _all_data() -> Iterator[bpy.types.ID]:
+    """Every data-block of the file that may be animated."""
+    for data in bpy.data.all_ids:
+        tree = getattr(data, "node_tree", None)
+        for each in (data, tree if tree is not None and tree.is_embedded_data else None):
+            if hasattr(each, "animation_data"):
+                yield each
+
+
+# Leftovers ------------------------------------------------------------------------------------------------------------
+
+
+@dataclass
+class _Leftovers:
+    """What exchanged groups leave behind: they themselves, their texts, images of tables and lists of lamps."""
+
+    groups: set[bpy.types.NodeTree] = field(default_factory=set)
+    texts: set[bpy.types.Text] = field(default_factory=set)
+    images: set[bpy.types.Image] = field(default_factory=set)
+
+    def note(self, tree: bpy.types.NodeTree) -> None:
+        """Remember a local group and what stands in it."""
+        if tree.library is not None or tree in self.groups:
+            return
+        self.groups.add(tree)
+        for data in _held_by(tree):
+            if isinstance(data, bpy.types.NodeTree):
+                self.note(data)
+            else:
+                (self.texts if isinstance(data, bpy.types.Text) else self.images).add(data)
+
+    def remove(self) -> None:
+        """Remove what nothing uses any more; a text's own users are the Script nodes that are left."""
+        unused = sorted(self.groups, key=lambda tree: group_version(tree) is None)  # a list of lamps after its group
+        for tree in unused:
+            if tree.users - tree.use_fake_user == 0 and tree != find_group():
+                bpy.data.node_groups.remove(tree)
+        _remove_unused(self.images, bpy.data.images.remove)
+        _remove_unused(self.texts, bpy.data.texts.remove)
+        tree = find_group()
+        for data in (tree, *_held_by(tree)):
+            _take_plain_name(data)
+
+
+def _held_by(tree: bpy.types.NodeTree) -> Iterator[bpy.types.ID]:
+    """Texts of shaders, images of tables and groups in a group."""
+    for node in tree.nodes:
+        if node.type == "SCRIPT" and node.script is not None:
+            yield node.script
+        elif node.type == "TEX_IMAGE" and node.image is not None and TABLES in node.image:
+            yield node.image
+        elif node.type == "GROUP" and node.node_tree is not None:
+            yield node.node_tree
+
+
+def _remove_unused(found: Iterable[bpy.types.ID], remove: Callable[[bpy.types.ID], None]) -> None:
+    for data in found:
+        if data.users - data.use_fake_user == 0:
+            remove(data)
+
+
+def _take_plain_name(data: bpy.types.ID) -> None:
+    """Name what is left of several copies as the first of them; Blender numbers it if that is still taken."""
+    stem, _, number = data.name.rpartition(".")
+    if number.isdigit():
+        data.name = stem
+
+
+def _merge_offsets() -> list[str]:
+    """Let all modifiers that part faces use one group."""
+    copies = [
+        tree
+        for tree in bpy.data.node_groups
+        if tree.library is None
+        and tree.bl_idname == "GeometryNodeTree"
+        and tree.name.rpartition(".")[0] == OFFSET_GROUP
+        and tree.name.rpartition(".")[2].isdigit()
+    ]
+    if not copies:
+        return []
+    kept = bpy.data.node_groups.get(OFFSET_GROUP) or copies.pop(0)
+    kept.name = OFFSET_GROUP
+    for tree in copies:
+        tree.user_remap(kept)
+    _remove_unused(copies, bpy.data.node_groups.remove)
+    return [f"{OFFSET_GROUP}: {len(copies) + 1} copies became one"]
