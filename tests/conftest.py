@@ -3,4 +3,27 @@
 import sys
 from pathlib import Path
 
+import pytest
+
 sys.path.insert(0, str(Path(__file__).parent))
+
+
+def pytest_collection_modifyitems(items):
+    """What takes no time comes first."""
+    items.sort(key=lambda item: item.get_closest_marker("quick") is None)
+
+
+@pytest.fixture(autouse=True)
+def renders_nothing(request):
+    """Hold tests that are marked as quick to it."""
+    if request.node.get_closest_marker("quick") is None:
+        yield
+        return
+    import bpy
+
+    renders = []
+    watch = bpy.app.handlers.persistent(lambda *_: renders.append(request.node.name))
+    bpy.app.handlers.render_init.append(watch)
+    yield
+    bpy.app.handlers.render_init.remove(watch)
+    assert not renders

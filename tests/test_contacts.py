@@ -8,6 +8,8 @@ from mathutils import Matrix
 from nested_dielectric import contacts, meshes
 from nested_dielectric.contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Memory, Solid, analyse
 
+pytestmark = pytest.mark.quick
+
 # Face centres nearer than this to another surface may be told either way by the brute force.
 OUTSIDE = 1e-6
 

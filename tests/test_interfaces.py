@@ -7,6 +7,7 @@ import pytest
 from mathutils import Matrix
 
 import nested_dielectric as nd
+from references import reference_batches
 from scenes import (
     add_camera,
     add_mesh,
@@ -14,6 +15,7 @@ from scenes import (
     assert_same_picture,
     batches,
     cycles_glass,
+    mostly_again,
     new_scene,
     set_striped_world,
 )
@@ -38,7 +40,7 @@ def test_nested_spheres_match_interfaces_split_by_hand():
     scene()
     for name, radius, ratio in (("Glass", 1.0, 1.5), ("Water", 0.8, 1.33 / 1.5), ("Air", 0.5, 1 / 1.33)):
         add_sphere(name, radius, cycles_glass(ratio))
-    assert_same_picture(ours, batches(SAMPLES, BATCHES))
+    assert_same_picture(ours, reference_batches(SAMPLES, BATCHES))
 
 
 INDICES = {"X": 1.5, "Y": 1.33, "Z": 1.8}
@@ -123,7 +125,7 @@ def add_split_cylinders(order: tuple[str, str, str]) -> None:
             add_patch(f"{loser} in {winner}", left, winner, INDICES[loser] / INDICES[winner])
 
 
-@pytest.mark.parametrize("order", [("X", "Y", "Z"), ("Y", "Z", "X"), ("Z", "X", "Y")])
+@pytest.mark.parametrize("order", mostly_again([("X", "Y", "Z"), ("Y", "Z", "X"), ("Z", "X", "Y")]))
 def test_overlapping_cylinders_match_exact_booleans(order):
     """The scene of the original paper: three cylinders cross, and priorities alone decide which is whole."""
 
@@ -140,4 +142,4 @@ def test_overlapping_cylinders_match_exact_booleans(order):
 
     scene()
     add_split_cylinders(order)
-    assert_same_picture(ours, batches(SAMPLES, BATCHES))
+    assert_same_picture(ours, reference_batches(SAMPLES, BATCHES))

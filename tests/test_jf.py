@@ -13,6 +13,8 @@ from nested_dielectric import cli, jf
 from nested_dielectric.materials import dielectric_node, get_parameter, spectrum_settings
 from nested_dielectric.parameters import BY_KEYWORD, PARAMETERS, check_keywords
 
+pytestmark = pytest.mark.quick
+
 # The interface of JF 1.0.5 as published: name and default. It stands here a second time, so that no row is lost.
 INTERFACE = """
 mediumPriority 0

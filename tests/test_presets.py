@@ -7,6 +7,8 @@ import pytest
 
 from nested_dielectric import dispersion, parameters, presets
 
+pytestmark = pytest.mark.quick
+
 VISIBLE = range(380, 781)
 
 

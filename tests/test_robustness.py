@@ -9,7 +9,7 @@ import pytest
 from mathutils import Euler, Matrix
 
 import nested_dielectric as nd
-from scenes import add_camera, add_mesh, new_scene, render, set_world
+from scenes import add_camera, add_mesh, mostly_again, new_scene, render, set_world
 
 
 def build_flawed_solid(bm: bmesh.types.BMesh, chance: random.Random) -> None:
@@ -83,7 +83,7 @@ def build_chaos(seed: int, roughness: float, split: bool = False) -> None:
     camera.data.clip_start, camera.data.clip_end = scale * 1e-4, scale * 1e4
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", mostly_again(range(10), 3))
 def test_flawed_sharp_media_never_send_back_more_light_than_they_get(seed):
     build_chaos(seed, roughness=0.0)
     picture = render(16)
@@ -91,7 +91,7 @@ def test_flawed_sharp_media_never_send_back_more_light_than_they_get(seed):
     assert picture.min() >= 0.0 and picture.max() <= 1.0 + 1e-4
 
 
-@pytest.mark.parametrize("seed", range(20, 24))
+@pytest.mark.parametrize("seed", mostly_again(range(20, 24)))
 def test_flawed_rough_media_stay_finite_and_make_no_light_on_average(seed):
     """Single samples of rough lobes weigh more than 1; multi-scatter GGX may exceed 1 on average by its fit's error
     of a per cent.
@@ -102,7 +102,7 @@ def test_flawed_rough_media_stay_finite_and_make_no_light_on_average(seed):
     assert picture.mean() < 1.01
 
 
-@pytest.mark.parametrize("seed", (*range(41, 49), 98))
+@pytest.mark.parametrize("seed", mostly_again((*range(41, 49), 98), 2))
 def test_flawed_media_with_any_curve_stay_finite_and_make_no_light(seed):
     """A sample of one wavelength weighs up to 2.75 in one channel; 64 of them spread evenly average to white."""
     build_chaos(seed, roughness=0.0, split=True)

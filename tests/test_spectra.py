@@ -12,6 +12,8 @@ import pytest
 from nested_dielectric import spectra
 from nested_dielectric.spectra import DISTRIBUTIONS, ENTRIES, GAMUTS, SpectrumError, preview, spectral_table, spectrum
 
+pytestmark = [pytest.mark.pure, pytest.mark.quick]
+
 colour = spectra._colour()
 
 WORDS = [choice.keyword for choice in DISTRIBUTIONS]
