@@ -90,16 +90,17 @@ def outdated_materials() -> list[str]:
 
 def version_problems() -> list[Problem]:
     """Return what is wrong with the versions of materials and cannot be changed here."""
+    newer = {tree for tree in bpy.data.node_groups if (group_version(tree) or 0) > MATERIAL_VERSION}
+    wrong = {tree for tree in bpy.data.node_groups if tree.library is not None and _is_wrong_here(tree)}
     problems = []
-    for material in bpy.data.materials:
+    for material in bpy.data.materials if newer or wrong else ():
         node = dielectric_node(material)
-        if node is None:
-            continue
-        if material.library is not None and _is_wrong_here(node.node_tree):
+        tree = None if node is None else node.node_tree
+        if tree in newer:
+            problems.append(Problem(material.name, "was made by a newer version", "install that version of the extension"))
+        elif tree in wrong and material.library is not None:
             remedy = f"press Update Materials in {material.library.filepath!r} and save it"
             problems.append(Problem(material.name, "comes from a file of an older version, which is wrong here", remedy))
-        elif (group_version(node.node_tree) or 0) > MATERIAL_VERSION:
-            problems.append(Problem(material.name, "was made by a newer version", "install that version of the extension"))
     return problems
 
 
