@@ -45,6 +45,7 @@ def test_the_users_own_scene_is_left_alone(scene):
     assert len(own.objects) == 0 and own.cycles.samples != scene.cycles.samples
 
 
+@pytest.mark.again
 def test_the_demo_command_renders_the_picture(tmp_path):
     done = run("demo", "-o", tmp_path / "picture.png", "--samples", 1, "--save", tmp_path / "scene.blend")
     assert done.returncode == 0, done.stderr
