@@ -62,8 +62,7 @@ def update_materials() -> tuple[str, ...]:
     if outdated:
         leftovers.remove()
     changes += _merge_offsets()
-    for tree in _local_groups():
-        arm_dispersion(tree)
+    _arm_groups()
     if changes:
         for scene in bpy.data.scenes:
             if analysis.is_analysed(scene):
@@ -76,10 +75,9 @@ def mend_materials() -> tuple[str, ...]:
 
     Returns what was changed, in sentences.
     """
-    if any(map(_is_wrong_here, _local_groups(every_version=True))):
+    if any(tree.library is None and _is_wrong_here(tree) for tree in bpy.data.node_groups):
         return update_materials()
-    for tree in _local_groups():
-        arm_dispersion(tree)
+    _arm_groups()
     return ()
 
 
@@ -108,30 +106,28 @@ def _is_wrong_here(tree: bpy.types.NodeTree) -> bool:
     return (group_version(tree) or FRONT_IOR_VERSION) < FRONT_IOR_VERSION and bool(takes_front_ior())
 
 
-def _local_groups(every_version: bool = False) -> list[bpy.types.NodeTree]:
-    return [
-        tree
-        for tree in bpy.data.node_groups
-        if tree.library is None
-        and (version := group_version(tree)) is not None
-        and (every_version or version == MATERIAL_VERSION)
-    ]
+def _arm_groups() -> None:
+    for tree in bpy.data.node_groups:
+        if tree.library is None and group_version(tree) == MATERIAL_VERSION:
+            arm_dispersion(tree)
 
 
 def _outdated_nodes() -> Iterator[bpy.types.ShaderNodeGroup]:
     """Group nodes of the file's own materials and groups that show another group than this version's one."""
     current = find_group()
-    groups = [tree for tree in bpy.data.node_groups if (group_version(tree) or MATERIAL_VERSION + 1) <= MATERIAL_VERSION]
-    if not any(_is_outdated(tree, current) for tree in groups):
-        return
-    for host in _shader_trees():
+    groups = {tree for tree in bpy.data.node_groups if _is_outdated(tree, current)}
+    for host in _shader_trees() if groups else ():
         for node in host.nodes:
-            if node.type == "GROUP" and node.node_tree in groups and _is_outdated(node.node_tree, current):
+            if node.type == "GROUP" and node.node_tree in groups:
                 yield node
 
 
 def _is_outdated(tree: bpy.types.NodeTree, current: bpy.types.NodeTree | None) -> bool:
-    return group_version(tree) < MATERIAL_VERSION or (tree.library is None and tree != current)
+    """Whether a group is of an older version, or a copy of this version's one in this file."""
+    version = group_version(tree)
+    if version is None or version > MATERIAL_VERSION:
+        return False
+    return version < MATERIAL_VERSION or (tree.library is None and tree != current)
 
 
 def _shader_trees() -> Iterator[bpy.types.NodeTree]:
@@ -311,10 +307,8 @@ class _Leftovers:
 
     def remove(self) -> None:
         """Remove what nothing uses any more; a text's own users are the Script nodes that are left."""
-        unused = sorted(self.groups, key=lambda tree: group_version(tree) is None)  # a list of lamps after its group
-        for tree in unused:
-            if tree.users - tree.use_fake_user == 0 and tree != find_group():
-                bpy.data.node_groups.remove(tree)
+        lists_last = sorted(self.groups, key=lambda tree: group_version(tree) is None)
+        _remove_unused(lists_last, bpy.data.node_groups.remove)
         _remove_unused(self.images, bpy.data.images.remove)
         _remove_unused(self.texts, bpy.data.texts.remove)
         tree = find_group()
@@ -341,26 +335,28 @@ def _remove_unused(found: Iterable[bpy.types.ID], remove: Callable[[bpy.types.ID
 
 def _take_plain_name(data: bpy.types.ID) -> None:
     """Name what is left of several copies as the first of them; Blender numbers it if that is still taken."""
+    if data.name != _plain_name(data):
+        data.name = _plain_name(data)
+
+
+def _plain_name(data: bpy.types.ID) -> str:
+    """A name without the number that Blender gives a copy."""
     stem, _, number = data.name.rpartition(".")
-    if number.isdigit():
-        data.name = stem
+    return stem if number.isdigit() else data.name
 
 
 def _merge_offsets() -> list[str]:
     """Let all modifiers that part faces use one group."""
-    copies = [
+    found = [
         tree
         for tree in bpy.data.node_groups
-        if tree.library is None
-        and tree.bl_idname == "GeometryNodeTree"
-        and tree.name.rpartition(".")[0] == OFFSET_GROUP
-        and tree.name.rpartition(".")[2].isdigit()
+        if tree.library is None and tree.bl_idname == "GeometryNodeTree" and _plain_name(tree) == OFFSET_GROUP
     ]
-    if not copies:
+    if [tree.name for tree in found] in ([], [OFFSET_GROUP]):
         return []
-    kept = bpy.data.node_groups.get(OFFSET_GROUP) or copies.pop(0)
-    kept.name = OFFSET_GROUP
+    kept, *copies = found
     for tree in copies:
         tree.user_remap(kept)
     _remove_unused(copies, bpy.data.node_groups.remove)
-    return [f"{OFFSET_GROUP}: {len(copies) + 1} copies became one"]
+    _take_plain_name(kept)
+    return [f"{OFFSET_GROUP}: {len(found)} copies became one" if copies else f"{OFFSET_GROUP}: has its name back"]

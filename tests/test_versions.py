@@ -14,8 +14,8 @@ from nested_dielectric.lights import listed_lamps, update_lights
 from nested_dielectric.materials import material_table
 from nested_dielectric.parting import OFFSET_GROUP
 from nested_dielectric.spectra import spectral_table
-from released import IORS, LAST_FRAME, NODE, TINT, build_scene
-from scenes import add, add_box, add_camera, add_sphere, new_scene, render, set_striped_world
+from released import IORS, NODE, TINT, build_scene
+from scenes import add_box, new_scene, render
 
 FILES = Path(__file__).parent / "files"
 RELEASED = sorted(FILES.glob("released_*.blend"))
@@ -100,7 +100,6 @@ def test_the_first_release_looks_the_same_after_its_update():
     open_file(FIRST)
     before = render(16)
     nd.update_materials()
-    # Where paths may have lost what kept their random numbers in step a tile's mean stays.
     assert (np.array_equal(render(16), before)) != FRONT_IOR
 
 
@@ -219,6 +218,13 @@ def test_groups_that_part_faces_become_one():
     assert nd.update_materials() == (f"{OFFSET_GROUP}: 2 copies became one",)
     assert [tree.name for tree in bpy.data.node_groups] == [OFFSET_GROUP]
     assert all(bpy.data.objects[name].modifiers[0].node_group == bpy.data.node_groups[0] for name in ("A", "B"))
+
+
+def test_a_group_that_parts_faces_is_known_again_if_only_a_copy_is_left():
+    new_scene()
+    bpy.data.node_groups.new(f"{OFFSET_GROUP}.001", "GeometryNodeTree").use_fake_user = True
+    assert nd.update_materials() == (f"{OFFSET_GROUP}: has its name back",)
+    assert [tree.name for tree in bpy.data.node_groups] == [OFFSET_GROUP] and nd.update_materials() == ()
 
 
 def test_a_node_inside_an_artists_group_is_updated_too():
