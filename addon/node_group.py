@@ -29,7 +29,7 @@ CYCLES_OUTPUT = "Surface"
 VOLUME_OUTPUT = "Volume"
 PREVIEW_OUTPUT = "Preview"
 
-MATERIAL_VERSION = 2
+MATERIAL_VERSION = 3
 """Of the group and of all that stands in a file with it. A release that changes any of it counts on."""
 
 FRONT_IOR_VERSION = 2
