@@ -10,10 +10,11 @@
     print(nd.prepare(bpy.context.scene))
 """
 
-from .analysis import analyse, clear_analysis
+from .analysis import clear_analysis
 from .caustics import set_shadow_caustics
 from .compatibility import UnsupportedError
 from .lights import light_carriers
+from .live import analyse
 from .materials import new_material
 from .media import assign, get_priority, set_priority
 from .parameters import ParameterError

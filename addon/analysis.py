@@ -5,13 +5,16 @@ the sockets of a material where it holds for all of its objects, else into their
 a mesh where its faces differ. The shader needs nothing else of the extension. Whatever may be different in a render (things
 that move, modifiers that depend on more than their mesh, what is hidden in the viewport alone) leaves all media asking the
 scene, as they do without an analysis; and the shader checks a share of what it is told (osl/outside.h).
+
+What is told holds in the scene that was looked at, on the frame it showed then, and on all frames while somebody sees to it
+that no script changes the scene (:mod:`nested_dielectric.live`): elsewhere the materials themselves fall back to asking.
 """
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, field, replace
 from functools import cache, cached_property
 from time import perf_counter
 
@@ -21,9 +24,11 @@ import numpy as np
 from . import contacts
 from .contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
 from .materials import dielectric_node
+from .identity import NO_SCENE, known_number, scene_number
 from .media import media, own_priority
 from .node_group import (
     AIR_AROUND,
+    ANALYSED,
     BY_OBJECT,
     CLEAR,
     FACE_ATTRIBUTE,
@@ -35,14 +40,12 @@ from .node_group import (
     OFFSET_GROUP,
     OUTSIDE_SOCKET,
     OVERLAP_SOCKET,
+    SCENE_SOCKET,
     SLOTS_SOCKET,
     SURROUNDINGS_COLOR_SOCKET,
     SURROUNDINGS_SOCKET,
     has_analysis,
 )
-
-ANALYSED = "nd_analysed"
-"""Custom property of a scene whose media are kept analysed."""
 
 SETTLED_MODIFIERS = frozenset(
     (
@@ -76,6 +79,9 @@ the hull of any coarser one.
 
 NEAR = 1e-3
 """Margin around what has changed, which may touch what its box does not meet."""
+
+VELOCITY = "velocity"
+"""Attribute of points by which Cycles moves them while the shutter is open."""
 
 PATIENCE = 0.03
 """Seconds that one look at a scene may take while the mouse moves something in it."""
@@ -123,7 +129,6 @@ class Found:
     :param asking: media that ask the scene everywhere.
     :param overlapping: media that overlap themselves.
     :param coincident: pairs of media with faces in the same place.
-    :param stale: media that linked files tell of other surroundings than they have here.
     :param doubts: why nothing is told to any medium, by name; empty where it is.
     """
 
@@ -132,7 +137,6 @@ class Found:
     asking: tuple[str, ...] = ()
     overlapping: tuple[str, ...] = ()
     coincident: tuple[tuple[str, str], ...] = ()
-    stale: tuple[str, ...] = ()
     doubts: tuple[tuple[str, str], ...] = ()
 
     def __str__(self) -> str:
@@ -144,7 +148,6 @@ class Found:
                 (self.partly, "know what surrounds them except near crossings"),
                 (() if self.doubts else self.asking, "ask the scene what surrounds them"),
                 (self.overlapping, "overlap themselves, which takes longer"),
-                (self.stale, "show magenta, because their linked file tells them otherwise"),
             )
             if names
         ]
@@ -158,19 +161,26 @@ def _listed(names: tuple[str, ...], most: int = 4) -> str:
 
 def is_analysed(scene: bpy.types.Scene) -> bool:
     """Whether the media of a scene are kept analysed."""
-    return bool(scene.get(ANALYSED))
+    return ANALYSED in scene
 
 
 def clear_analysis(scene: bpy.types.Scene) -> None:
-    """Make all media of a scene ask it again while it is rendered, and those of other scenes until they are analysed."""
+    """Make all media of a scene ask it again while it is rendered, and leave no trace of the analysis on them.
+
+    What another analysed scene shares with it asks there too until that one is analysed again.
+    """
     scene.pop(ANALYSED, None)
-    for obj in bpy.data.objects:
-        _tell_object(obj, None)
-        if obj.type == "MESH" and obj.mode == "OBJECT":
-            _tell_faces(obj.data, None)
+    _of(scene).survey = None
+    number = known_number(scene)
     for material in bpy.data.materials:
-        if dielectric_node(material) is not None:
-            _tell_material(material, Outside())
+        if _is_told_of(material, number):
+            _tell_material(material, Outside(), NO_SCENE)
+    told = {material for material in bpy.data.materials if _is_told_of(material)}
+    for obj in bpy.data.objects:
+        if not any(slot.material in told for slot in obj.material_slots):
+            _tell_object(obj, None)
+            if obj.type == "MESH" and obj.mode == "OBJECT":
+                _tell_faces(obj.data, None)
 
 
 def analyse(scene: bpy.types.Scene) -> Found:
@@ -178,11 +188,56 @@ def analyse(scene: bpy.types.Scene) -> Found:
 
     Linked materials and objects are left as they are.
     """
-    scene[ANALYSED] = True
     layer = scene.view_layers[0]
     layer.update()
-    forget_shapes()
+    _shapes.clear()
     return _look(_survey(scene, layer.depsgraph))
+
+
+def trust(scene: bpy.types.Scene, every_frame: bool) -> None:
+    """Let what the media of an analysed scene are told hold on every frame, or on one alone: the present one, if it held on
+    every frame before.
+    """
+    validity = _validity(scene)
+    frame = _frame(scene) if validity.every_frame else validity.frame
+    _set_validity(scene, _Validity(validity.holds, frame, float(every_frame)))
+
+
+def distrust(scene: bpy.types.Scene) -> None:
+    """Let the media of an analysed scene ask until it is analysed again."""
+    _set_validity(scene, _Validity())
+    _of(scene).survey = None
+
+
+@dataclass(frozen=True)
+class _Validity:
+    """Where what the media of a scene are told holds; materials read these numbers of the scene (`_analysis_holds` in
+    addon/node_group.py).
+    """
+
+    holds: float = 0.0
+    frame: float = 0.0
+    every_frame: float = 0.0
+
+
+def _validity(scene: bpy.types.Scene) -> _Validity:
+    value = scene.get(ANALYSED)
+    try:
+        return _Validity(*map(float, value))
+    except (TypeError, ValueError):  # an older file's, or somebody else's
+        return _Validity()
+
+
+def _set_validity(scene: bpy.types.Scene, validity: _Validity) -> None:
+    numbers = astuple(validity)
+    before = scene.get(ANALYSED)
+    if not hasattr(before, "__len__") or tuple(before) != numbers:
+        scene[ANALYSED] = numbers
+        scene.update_tag()
+
+
+def _frame(scene: bpy.types.Scene) -> float:
+    return float(scene.frame_current)
 
 
 def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
@@ -202,9 +257,9 @@ def hold(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
     survey = _updated(scene, depsgraph)
     if survey is None:
         return False
-    latest = _surveys.get(scene.session_uid)
+    latest = _of(scene).survey
     settled = latest and (latest.settled or latest)
-    if not settled or not survey.is_like(settled) or _seconds.get(scene.session_uid, 0.0) < PATIENCE:
+    if not settled or not survey.is_like(settled) or _of(scene).seconds < PATIENCE:
         _look(survey)
         return False
     _conclude(replace(survey, contacts=settled.contacts, settled=settled))
@@ -213,16 +268,19 @@ def hold(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
 
 
 def settle(scene: bpy.types.Scene) -> None:
-    """Analyse what :func:`hold` left."""
-    survey = _surveys.get(scene.session_uid)
-    if survey is not None and survey.settled is not None:
+    """Analyse what :func:`hold` left, or all after :func:`distrust`."""
+    survey = _of(scene).survey
+    if survey is None:
+        analyse(scene)
+    elif survey.settled is not None:
         _look(replace(survey, settled=None))
 
 
 def forget_shapes() -> None:
     """Look at all meshes anew the next time: after another file, or another state of this one, has been loaded."""
     _shapes.clear()
-    _surveys.clear()
+    for known in _scenes.values():
+        known.survey = None
 
 
 @dataclass(frozen=True)
@@ -253,7 +311,7 @@ class Coincidence:
 
 def coincidences(scene: bpy.types.Scene) -> list[Coincidence]:
     """Return what coincides in a scene, as the last analysis in this session found it."""
-    survey = _surveys.get(scene.session_uid)
+    survey = _of(scene).survey
     if survey is None:
         return []
     rows = survey.bodies
@@ -294,7 +352,7 @@ def coincidences(scene: bpy.types.Scene) -> list[Coincidence]:
 
 def last_found(scene: bpy.types.Scene) -> Found | None:
     """What the last analysis of a scene found in this session."""
-    return _last.get(scene.session_uid) if is_analysed(scene) else None
+    return _of(scene).found if is_analysed(scene) else None
 
 
 _CONCERNED = (
@@ -311,20 +369,21 @@ _SHADING = (bpy.types.Material, bpy.types.ShaderNodeTree)
 def _look(survey: _Survey) -> Found:
     """Find the contacts of a survey, and tell the media."""
     start = perf_counter()
-    found = _conclude(replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], _memory)))
-    if _memory.looked_at:
-        _seconds[survey.scene.session_uid] = perf_counter() - start
+    known = _of(survey.scene)
+    found = _conclude(replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], known.memory)))
+    if known.memory.looked_at:
+        known.seconds = perf_counter() - start
     return found
 
 
 def _conclude(survey: _Survey) -> Found:
     told = _outsides(survey)
     _tell(survey, told)
-    _forget_unused(survey)
-    found = _found(survey, told)
-    _surveys[survey.scene.session_uid] = survey
-    _last[survey.scene.session_uid] = found
-    return found
+    known = _of(survey.scene)
+    known.survey, known.found = survey, _found(survey, told)
+    _forget_unused()
+    _set_validity(survey.scene, _Validity(1.0, _frame(survey.scene), _validity(survey.scene).every_frame))
+    return known.found
 
 
 # Looking ------------------------------------------------------------------------------------------------------------
@@ -390,7 +449,8 @@ class _Survey:
     :param rows: in the order of the depsgraph.
     :param facts: of the materials.
     :param doubts: names and reasons.
-    :param known: objects by name whose rows may be made anew one by one; empty where objects are instanced.
+    :param known: rows that may be made anew one by one, by the session's number of their objects; empty where objects are
+        instanced.
     :param settled: the survey whose contacts these are, if some rows have changed since.
     """
 
@@ -398,7 +458,7 @@ class _Survey:
     rows: list[_Row]
     facts: dict[bpy.types.Material, _Facts]
     doubts: tuple[tuple[str, str], ...]
-    known: dict[str, int]
+    known: dict[int, int]
     contacts: list[Contact]
     settled: _Survey | None = None
 
@@ -415,12 +475,6 @@ class _Survey:
         """Media whose place, shape or values are others than in the settled survey: as they were and as they are."""
         pairs = zip(self.settled.rows, self.rows) if self.settled else ()
         return [row for before, now in pairs if now.medium and not now.is_same(before) for row in (before, now)]
-
-    @cached_property
-    def elsewhere(self) -> set[bpy.types.Object]:
-        """Objects of other scenes, where what holds in this one need not."""
-        others = [scene for scene in bpy.data.scenes if scene != self.scene]
-        return {obj for scene in others for obj in (*scene.objects, *media(scene))}
 
     @cached_property
     def bodies(self) -> list[_Row]:
@@ -447,12 +501,27 @@ _shapes: dict[int, Solid] = {}
 _solids: dict[bytes, Solid] = {}
 """The same by what is in them."""
 
-_memory = Memory()
-_surveys: dict[int, _Survey] = {}
-_seconds: dict[int, float] = {}
-"""How long the last look at a scene took for which meshes were compared."""
 
-_last: dict[int, Found] = {}
+@dataclass
+class _Known:
+    """What this session knows of a scene.
+
+    :ivar survey: as it was looked at last; None if it has to be looked at anew.
+    :ivar seconds: how long the last look took for which meshes were compared.
+    """
+
+    survey: _Survey | None = None
+    found: Found | None = None
+    seconds: float = 0.0
+    memory: Memory = field(default_factory=Memory)
+
+
+_scenes: dict[int, _Known] = {}
+"""By the session's number of the scene."""
+
+
+def _of(scene: bpy.types.Scene) -> _Known:
+    return _scenes.setdefault(scene.session_uid, _Known())
 
 
 def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
@@ -474,7 +543,7 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
         and not obj.hide_render
         and not any(slot.material in facts for slot in obj.material_slots)
     ]
-    known = {row.obj.name: index for index, row in enumerate(rows)} if plain else {}
+    known = {row.obj.session_uid: index for index, row in enumerate(rows)} if plain else {}
     doubts = dict(_scene_doubts(scene, facts))
     seen = {row.obj for row in rows}
     doubts.update(
@@ -491,7 +560,7 @@ def _updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey 
     for data, update in changed.items():
         if update.is_updated_geometry or isinstance(data, bpy.types.Mesh):
             _shapes.pop(data.session_uid, None)
-    survey = _surveys.get(scene.session_uid)
+    survey = _of(scene).survey
     if survey is None or not all(_is_known(survey, data) for data in changed):
         return _survey(scene, depsgraph)
     if any(isinstance(data, _SHADING) for data in changed) and survey.facts != _all_facts():
@@ -499,14 +568,14 @@ def _updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey 
     rows = list(survey.rows)
     for obj in (data for data in changed if isinstance(data, bpy.types.Object)):
         evaluated = obj.evaluated_get(depsgraph)
-        rows[survey.known[obj.name]] = _row(scene, survey.facts, evaluated, np.array(evaluated.matrix_world))
+        rows[survey.known[obj.session_uid]] = _row(scene, survey.facts, evaluated, np.array(evaluated.matrix_world))
     return _Survey(scene, rows, survey.facts, survey.doubts, survey.known, [])
 
 
 def _is_known(survey: _Survey, data: bpy.types.ID) -> bool:
     """Whether an update of it concerns the rows of the updated objects alone, if it leaves the facts as they are."""
     if isinstance(data, bpy.types.Object):
-        return data.name in survey.known
+        return data.session_uid in survey.known
     if isinstance(data, bpy.types.Material):
         return data in survey.facts
     return isinstance(data, (bpy.types.Mesh, bpy.types.ShaderNodeTree))
@@ -529,6 +598,8 @@ def _row(
     }
     try:
         _require_still(obj)
+        if _has_velocity(evaluated):
+            raise _Doubt(f"has the attribute {VELOCITY!r}, by which motion blur moves its points")
         if not dielectric:
             displaced = any(
                 slot.material and slot.material.displacement_method != "BUMP" for slot in obj.material_slots
@@ -618,8 +689,12 @@ def triangles_of(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     return vertices, triangles
 
 
-def _forget_unused(survey: _Survey) -> None:
-    kept = {id(row.body.solid) for each in (survey, survey.settled) if each for row in each.bodies}
+def _forget_unused() -> None:
+    for gone in _scenes.keys() - {scene.session_uid for scene in bpy.data.scenes}:
+        del _scenes[gone]
+    surveys = [known.survey for known in _scenes.values() if known.survey]
+    surveys += [survey.settled for survey in surveys if survey.settled]
+    kept = {id(row.body.solid) for survey in surveys for row in survey.bodies}
     for shapes in (_shapes, _solids):
         for key in [key for key, solid in shapes.items() if id(solid) not in kept]:
             del shapes[key]
@@ -703,6 +778,11 @@ def _moves(obj: bpy.types.Object) -> bool:
     return False
 
 
+def _has_velocity(evaluated: bpy.types.Object) -> bool:
+    """Whether Cycles moves the points of an object by an attribute, as caches of simulations bring it, while it blurs."""
+    return VELOCITY in getattr(evaluated.data, "attributes", ())
+
+
 def _is_animated(data: bpy.types.ID | None) -> bool:
     return data is not None and data.animation_data is not None
 
@@ -761,28 +841,6 @@ class _Told:
     outside: Outside
     faces: np.ndarray | None = None
 
-    @property
-    def codes(self) -> np.ndarray:
-        """Of the faces, or one for all."""
-        if self.outside.code != FACES:
-            return np.array([self.outside.code])
-        return np.array([PROBE]) if self.faces is None else self.faces
-
-    def is_true(self, truth: _Told) -> bool:
-        """Whether the truth tells all that this does."""
-        outside, codes = self.outside, self.codes
-        asks = ((codes == PROBE) | (codes >= LEVELS)).any()
-        return bool(
-            _are_true(codes, truth.codes)
-            and (
-                not (codes == MEDIUM).any()
-                or (outside.medium, outside.transmittance) == (truth.outside.medium, truth.outside.transmittance)
-            )
-            and (outside.overlaps_itself or not truth.outside.overlaps_itself)
-            and (not asks or outside.foreign or not truth.outside.foreign)
-            and (not asks or outside.level in (-1.0, truth.outside.level))
-        )
-
 
 def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
     """What each medium is told: what holds for all of its instances."""
@@ -803,14 +861,14 @@ def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
             one = _told(survey, row, contact, bool(foreign[[index, *contact.partners]].any()))
         told.setdefault(row.obj, []).append(one)
     for row in survey.rows:
-        if row.medium and (row.body is None or row.obj in survey.elsewhere):
+        if row.medium and (row.body is None or _has_linked_material(row.obj, survey.facts)):
             told[row.obj] = [_Told(Outside())]
     return _merged(told)
 
 
-def _are_true(codes: np.ndarray | None, truth: np.ndarray) -> bool:
-    """Whether codes tell no more than the true ones."""
-    return codes is None or bool(((codes == PROBE) | (codes == truth)).all())
+def _has_linked_material(obj: bpy.types.Object, facts: dict[bpy.types.Material, _Facts]) -> bool:
+    """Whether an object is made of a medium that only its own file can tell anything."""
+    return any(slot.material in facts and slot.material.library is not None for slot in obj.material_slots)
 
 
 def _speaks_of(survey: _Survey, contact: Contact, priorities: set[int]) -> bool:
@@ -835,9 +893,8 @@ def _merged(told: dict[bpy.types.Object, list[_Told]]) -> dict[bpy.types.Object,
     faces = {
         mesh: _by_polygon(mesh, codes)
         for mesh, codes in faces.items()
-        if users[mesh] == mesh.users - mesh.use_fake_user and codes.any() and mesh not in busy
+        if users[mesh] == mesh.users - mesh.use_fake_user and codes.any() and mesh not in busy and mesh.library is None
     }
-    faces = {mesh: codes for mesh, codes in faces.items() if mesh.library is None or _are_true(_faces_of(mesh), codes)}
     result = {}
     for obj, rows in told.items():
         outside = _common(row.outside for row in rows)
@@ -899,17 +956,18 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
     for obj in told:
         for material in {slot.material for slot in obj.material_slots} & survey.facts.keys():
             users.setdefault(material, []).append(obj)
+    number = scene_number(survey.scene)
     slots = _most_slots()
     for material in survey.facts.keys() - users.keys():
-        _tell_material(material, Outside(), slots.get(material))
-    others = {slot.material for obj in survey.elsewhere - told.keys() for slot in obj.material_slots}
+        if _is_told_of(material, number):
+            _tell_material(material, Outside(), NO_SCENE)
     for material, objects in users.items():
-        if not survey.facts[material].can_be_told:
+        if material.library is not None or not survey.facts[material].can_be_told:
             continue
-        common = None if material.library else _common(told[obj].outside for obj in objects)
-        if material in others and common is not None:
-            common = Outside(overlaps_itself=common.overlaps_itself) if common.code == PROBE else None
-        _tell_material(material, common or Outside(BY_OBJECT), slots.get(material))
+        common = _common(told[obj].outside for obj in objects)
+        if common is None and any(obj.library is not None for obj in objects):
+            common = Outside()  # what a linked object carries is its own file's
+        _tell_material(material, common or Outside(BY_OBJECT), number, slots.get(material))
         for obj in objects:
             _tell_object(obj, None if common else told[obj].outside)
     if survey.settled:
@@ -940,11 +998,22 @@ def _most_slots() -> dict[bpy.types.Material, int]:
     return most
 
 
-def _tell_material(material: bpy.types.Material, outside: Outside, slots: int | None = None) -> None:
+def _is_told_of(material: bpy.types.Material, number: int | None = None) -> bool:
+    """Whether a material carries what an analysis found, of the scene of that number or with None of any."""
+    node = dielectric_node(material)
+    if node is None or not has_analysis(node):
+        return False
+    told_of = node.inputs[SCENE_SOCKET].default_value
+    return told_of != NO_SCENE if number is None else told_of == number
+
+
+def _tell_material(material: bpy.types.Material, outside: Outside, number: int, slots: int | None = None) -> None:
+    """Write what holds for all objects of a material in the scene of that number."""
     node = dielectric_node(material)
     if material.library is not None or not has_analysis(node):
         return
     values = {
+        SCENE_SOCKET: number,
         OUTSIDE_SOCKET: outside.code,
         LEVEL_SOCKET: outside.level,
         OVERLAP_SOCKET: outside.overlaps_itself,
@@ -986,35 +1055,6 @@ def _facts_in_one(outside: Outside) -> float:
     )
 
 
-def _outside_in(material: bpy.types.Material) -> Outside:
-    """What a material tells its objects."""
-    inputs = dielectric_node(material).inputs
-    return Outside(
-        inputs[OUTSIDE_SOCKET].default_value,
-        inputs[LEVEL_SOCKET].default_value,
-        inputs[OVERLAP_SOCKET].default_value,
-        inputs[FOREIGN_SOCKET].default_value,
-        tuple(inputs[SURROUNDINGS_SOCKET].default_value),
-        tuple(inputs[SURROUNDINGS_COLOR_SOCKET].default_value),
-    )
-
-
-def _outside_of(obj: bpy.types.Object) -> Outside:
-    """What an object's custom properties tell, the other way round than :func:`_facts_in_one`."""
-    medium, transmittance = (obj.get(name) for name in OBJECT_PROPERTIES)
-    if medium is None:
-        return Outside()
-    facts = int(medium[0])
-    return Outside(
-        facts & 7,
-        (facts >> 6) - 1.0,
-        bool(facts & 8),
-        not facts & 16,
-        tuple(medium[1:]),
-        tuple(transmittance) if facts & 32 and transmittance is not None else CLEAR,
-    )
-
-
 def _faces_of(mesh: bpy.types.Mesh) -> np.ndarray | None:
     """What a mesh tells its faces."""
     attribute = mesh.attributes.get(FACE_ATTRIBUTE)
@@ -1023,13 +1063,6 @@ def _faces_of(mesh: bpy.types.Mesh) -> np.ndarray | None:
     faces = np.empty(len(mesh.polygons), dtype=np.int8)
     attribute.data.foreach_get("value", faces)
     return faces
-
-
-def _heard(obj: bpy.types.Object, material: bpy.types.Material) -> _Told:
-    """What the shader reads of an object's outside."""
-    outside = _outside_in(material)
-    faces = _faces_of(obj.data) if isinstance(obj.data, bpy.types.Mesh) else None
-    return _Told(_outside_of(obj) if outside.code == BY_OBJECT else outside, faces)
 
 
 def _tell_faces(mesh: bpy.types.Mesh, faces: np.ndarray | None) -> None:
@@ -1065,17 +1098,5 @@ def _found(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> Found:
         asking=names(PROBE),
         overlapping=tuple(obj.name for obj, one in told.items() if one.outside.overlaps_itself),
         coincident=tuple(sorted(pairs)),
-        stale=tuple(obj.name for obj, one in told.items() if _is_stale(survey, obj, one)),
         doubts=tuple(dict(doubts).items()),
-    )
-
-
-def _is_stale(survey: _Survey, obj: bpy.types.Object, told: _Told) -> bool:
-    """Whether linked data, which an analysis cannot change, tell an object more than is true."""
-    materials = {slot.material for slot in obj.material_slots} & survey.facts.keys()
-    return any(
-        (material.library or obj.library or obj.data.library)
-        and survey.facts[material].can_be_told
-        and not _heard(obj, material).is_true(told)
-        for material in materials
     )

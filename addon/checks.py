@@ -196,7 +196,7 @@ def _lamp_problems(scene: bpy.types.Scene) -> list[Problem]:
         for carrier in light_carriers(scene)
         if carrier.reason
     ]
-    if listed_lamps() != carried_lamps(scene):
+    if listed_lamps(scene) != carried_lamps(scene):
         problems.append(
             Problem(
                 scene.name,

@@ -4,7 +4,8 @@ Cycles' rays carry a lamp unless its Ray Visibility leaves them out: Transmissio
 What rays leave out the lobes carry, so no lamp is ever counted twice.
 
 The group `Nested Dielectric Lights` holds one Script node a lamp, whose inputs are driven by the lamp itself. So an
-animated lamp, or one that a parent moves, is right on every frame, also where the extension is not installed.
+animated lamp, or one that a parent moves, is right on every frame, also where the extension is not installed. A file has one
+group for all of its prepared scenes; each lamp counts in its own scene alone, and in none that its material is taken to.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from dataclasses import dataclass
 
 import bpy
 
+from .identity import NO_SCENE, SCENE_PROPERTY, known_number, scene_number
 from .node_group import (
     EMITTER_OUTPUT,
     LAMPS_OUTPUT,
@@ -24,6 +26,8 @@ from .node_group import (
     ensure_lights,
     find_lights,
     make_script,
+    math_node,
+    view_layer_attribute,
 )
 from .shader_source import inlined_source
 
@@ -58,7 +62,7 @@ _COLORS = {"Color": "data.color", "TemperatureColor": "data.temperature_color"}
 _TRANSFORMS = {"Position": "LOC_{}", "Rotation": "ROT_{}", "Scale": "SCALE_{}"}
 
 _SOCKETS = (
-    dict.fromkeys(("Index", "Type"), "INT")
+    dict.fromkeys(("Index", "Here", "Type"), "INT")
     | dict.fromkeys((*_TRANSFORMS, *_COLORS), "VECTOR")
     | dict.fromkeys((*_VALUES, "Size", "SizeY", "SpotSize", "SpotBlend", "Spread"), "FLOAT")
     | {f"Other{name}": kind for name, kind in LAMP_OUTPUTS.items()}
@@ -115,55 +119,87 @@ def carried_lamps(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     ]
 
 
-def listed_lamps() -> list[bpy.types.Object | None]:
-    """Return the lamps that the file's group holds, in order; None for one that is no longer in the file."""
-    tree = find_lights()
-    return [] if tree is None else [_driving_lamp(tree, node) for node in _script_nodes(tree)]
+def listed_lamps(scene: bpy.types.Scene) -> list[bpy.types.Object | None]:
+    """Return the lamps that the file's group holds for a scene, in order; None for one that is no longer in the file."""
+    return [lamp for number, lamp in _listed() if number == known_number(scene)]
 
 
 def update_lights(scene: bpy.types.Scene) -> bool:
-    """Make the group hold the lamps that the lobes carry in a scene; tell whether it changed."""
-    return _list_lamps(carried_lamps(scene))
+    """Make the group hold the lamps that the lobes carry in a scene, and in those that were prepared before; tell whether it
+    changed.
+    """
+    scene_number(scene)
+    return _list_lamps()
 
 
 def refresh_lights() -> bool:
-    """Make the group hold the lamps that it holds in the way of this version; tell whether it changed."""
-    return find_lights() is not None and _list_lamps([lamp for lamp in listed_lamps() if lamp is not None])
+    """Make the group hold the lamps that it is to hold in the way of this version; tell whether it changed."""
+    tree = find_lights()
+    if tree is None:
+        return False
+    listed = {_driving_lamp(tree, node) for node in _script_nodes(tree)}
+    for scene in bpy.data.scenes:
+        if not listed.isdisjoint(lamps(scene)):  # a list of before scenes had numbers
+            scene_number(scene)
+    return _list_lamps()
 
 
-def _list_lamps(wanted: list[bpy.types.Object]) -> bool:
+def _listed() -> list[tuple[int, bpy.types.Object | None]]:
+    """Numbers of scenes and their lamps that the file's group holds, in order."""
+    tree = find_lights()
+    return [] if tree is None else [(_number(node), _driving_lamp(tree, node)) for node in _script_nodes(tree)]
+
+
+def _list_lamps() -> bool:
+    wanted = [
+        (known_number(scene), lamp)
+        for scene in bpy.data.scenes
+        if known_number(scene) != NO_SCENE
+        for lamp in carried_lamps(scene)
+    ]
     tree = ensure_lights()
     if (
         tree.get(LIGHTS_VERSION_PROPERTY) == MATERIAL_VERSION
-        and listed_lamps() == wanted
-        and all(node.inputs["Type"].default_value == _type(lamp.data) for lamp, node in zip(wanted, _script_nodes(tree)))
+        and _listed() == wanted
+        and all(node.inputs["Type"].default_value == _type(lamp.data) for (_, lamp), node in zip(wanted, _script_nodes(tree)))
     ):
         return False
     tree[LIGHTS_VERSION_PROPERTY] = MATERIAL_VERSION
     tree.animation_data_clear()
     tree.nodes.clear()
     outputs = tree.nodes.new("NodeGroupOutput")
-    outputs.inputs[LAMPS_OUTPUT].default_value = len(wanted)
-    previous = None
-    script = make_script(LIGHT_FILE, inlined_source(LIGHT_FILE)) if wanted else None
-    for index, lamp in enumerate(wanted):
+    if not wanted:
+        return True
+    script = make_script(LIGHT_FILE, inlined_source(LIGHT_FILE))
+    rendered = view_layer_attribute(tree, f'["{SCENE_PROPERTY}"]').outputs["Fac"]
+    previous, count = None, None
+    for index, (number, lamp) in enumerate(wanted):
         node = add_script(tree, lamp.name, script, _SOCKETS, LAMP_OUTPUTS)
         node.location = (260.0 * index, 0.0)
         _set_lamp(node, index, lamp)
+        here = math_node(tree, "COMPARE", rendered, float(number), 0.5)
+        tree.links.new(here, node.inputs["Here"])
+        count = here if count is None else math_node(tree, "ADD", count, here)
         if previous is not None:
             for name in LAMP_OUTPUTS:
                 tree.links.new(previous.outputs[name], node.inputs[f"Other{name}"])
         previous = node
-    if previous is not None:
-        for name in LAMP_OUTPUTS:
-            tree.links.new(previous.outputs[name], outputs.inputs[name])
-        emission = tree.nodes.new("ShaderNodeEmission")
-        emission.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-        emission.inputs["Strength"].default_value = WEAK
-        tree.links.new(emission.outputs[0], outputs.inputs[EMITTER_OUTPUT])
-        emission.location = (260.0 * (len(wanted) - 1), 300.0)
-        outputs.location = (260.0 * len(wanted), 0.0)
+    tree.links.new(count, outputs.inputs[LAMPS_OUTPUT])
+    for name in LAMP_OUTPUTS:
+        tree.links.new(previous.outputs[name], outputs.inputs[name])
+    emission = tree.nodes.new("ShaderNodeEmission")
+    emission.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    emission.inputs["Strength"].default_value = WEAK
+    tree.links.new(emission.outputs[0], outputs.inputs[EMITTER_OUTPUT])
+    emission.location = (260.0 * (len(wanted) - 1), 300.0)
+    outputs.location = (260.0 * len(wanted), 0.0)
     return True
+
+
+def _number(node: bpy.types.ShaderNodeScript) -> int:
+    """Of the scene in which a lamp counts."""
+    links = node.inputs["Here"].links if "Here" in node.inputs else ()
+    return int(links[0].from_node.inputs[1].default_value) if links else NO_SCENE
 
 
 def _script_nodes(tree: bpy.types.NodeTree) -> list[bpy.types.ShaderNodeScript]:

@@ -15,6 +15,7 @@ import numpy as np
 from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
 from .contacts import FACES, PROBE
 from .dispersion import mean_cauchy_distances
+from .identity import NO_SCENE, SCENE_PROPERTY
 from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS, Parameter
 from .shader_source import inlined_source
 from .spectral_images import TABLES, digest, ensure_row
@@ -50,7 +51,11 @@ LAMPS_OUTPUT = "Lamps"
 many lamps there are.
 """
 
+ANALYSED = "nd_analysed"
+"""Custom property of a scene whose media are kept analysed: what holds of its analysis, :class:`Validity`."""
+
 ANALYSIS_PANEL = "Scene Analysis"
+SCENE_SOCKET = "Analysed Scene"
 OUTSIDE_SOCKET = "Outside"
 LEVEL_SOCKET = "Outside Priority"
 OVERLAP_SOCKET = "Overlaps Itself"
@@ -93,6 +98,12 @@ _SOCKET_TYPES = {
 
 
 _ANALYSIS_SOCKETS = {
+    SCENE_SOCKET: (
+        "",
+        "INT",
+        NO_SCENE,
+        "Number of the scene that was analysed; in any other the scene is asked",
+    ),
     OUTSIDE_SOCKET: (
         "Around",
         "INT",
@@ -325,6 +336,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     told = {osl_name: (name, kind) for name, (osl_name, kind, *_) in _ANALYSIS_SOCKETS.items() if osl_name}
     kinds |= {osl_name: "INT" if kind == "BOOL" else kind for osl_name, (_, kind) in told.items()}
     kinds |= {
+        "AnalysisHolds": "INT",
         "Requests": "COLOR",
         "FrontIOR": "INT",
         "CountsPortals": "SHADER",
@@ -349,12 +361,14 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         links.new(source, script.inputs[parameter.osl_name])
     for osl_name, (name, _) in told.items():
         links.new(inputs.outputs[name], script.inputs[osl_name])
-    spectral = _view_layer_attribute(tree, "render.use_motion_blur").outputs["Fac"]
+    spectral = view_layer_attribute(tree, "render.use_motion_blur").outputs["Fac"]
     coefficients, absorbs = _absorption_coefficients(tree, inputs)
     front_ior = _takes_front_ior(tree)
-    split_by_closures = _math(tree, "MULTIPLY", inputs.outputs["Disperse"], front_ior)
-    curves_matter = _math(tree, "MAXIMUM", spectral, split_by_closures)
-    links.new(_requests(tree, inputs, curves_matter, absorbs), script.inputs["Requests"])
+    split_by_closures = math_node(tree, "MULTIPLY", inputs.outputs["Disperse"], front_ior)
+    curves_matter = math_node(tree, "MAXIMUM", spectral, split_by_closures)
+    analysis_holds = _analysis_holds(tree, inputs)
+    links.new(analysis_holds, script.inputs["AnalysisHolds"])
+    links.new(_requests(tree, inputs, curves_matter, absorbs, analysis_holds), script.inputs["Requests"])
     links.new(spectral, script.inputs["Spectral"])
     links.new(front_ior, script.inputs["FrontIOR"])
     table = inputs.outputs[TABLE_SOCKET]
@@ -414,7 +428,7 @@ def _spectral_tables(
     Linear interpolation makes the spectrum continuous and keeps every table's mean, because the edges are extended.
     """
     nodes, links = tree.nodes, tree.links
-    shutter = _view_layer_attribute(tree, "render.motion_blur_shutter")
+    shutter = view_layer_attribute(tree, "render.motion_blur_shutter")
     coordinate = add_script(
         tree,
         COORDINATE_NODE,
@@ -432,12 +446,35 @@ def _spectral_tables(
     return image
 
 
-def _view_layer_attribute(tree: bpy.types.NodeTree, path: str) -> bpy.types.ShaderNodeAttribute:
+def view_layer_attribute(tree: bpy.types.NodeTree, path: str) -> bpy.types.ShaderNodeAttribute:
     """A property of the scene that is rendered; a constant to Cycles, which leaves out what it makes needless."""
     attribute = tree.nodes.new("ShaderNodeAttribute")
     attribute.attribute_type = "VIEW_LAYER"
     attribute.attribute_name = path
     return attribute
+
+
+def _analysis_holds(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
+    """1 where what the material keeps of an analysis holds for the scene and the frame that are rendered.
+
+    Scripts may change a scene on every frame, and while the shutter is open: then it holds on the frame that was looked at,
+    if nothing blurs. Simplify may change every shape.
+    """
+    math = partial(math_node, tree)
+    number = view_layer_attribute(tree, f'["{SCENE_PROPERTY}"]').outputs["Fac"]
+    validity = tree.nodes.new("ShaderNodeSeparateColor")
+    tree.links.new(view_layer_attribute(tree, f'["{ANALYSED}"]').outputs["Color"], validity.inputs[0])
+    analysed, frame, every_frame = validity.outputs
+    frame_now, blurs, shutter, simplified = (
+        view_layer_attribute(tree, path).outputs["Fac"]
+        for path in ("frame_current", "render.use_motion_blur", "render.motion_blur_shutter", "render.use_simplify")
+    )
+    this_scene = math("COMPARE", number, inputs.outputs[SCENE_SOCKET], 0.5)
+    this_frame = math("COMPARE", frame_now, frame, 0.5)
+    still = math("LESS_THAN", math("MULTIPLY", blurs, shutter), 1e-6)
+    moment = math("MAXIMUM", every_frame, math("MULTIPLY", this_frame, still))
+    shapes = math("SUBTRACT", analysed, simplified)
+    return math("GREATER_THAN", math("MULTIPLY", this_scene, math("MULTIPLY", moment, shapes)), 0.5)
 
 
 def _takes_front_ior(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
@@ -446,8 +483,8 @@ def _takes_front_ior(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
     A file that is rendered without the extension can only tell by what else came with that Blender: an attribute that is
     not there has an alpha of 0.
     """
-    alphas = (_view_layer_attribute(tree, path).outputs["Alpha"] for path in FRONT_IOR_SIGNS)
-    return _math(tree, "MAXIMUM", *alphas)
+    alphas = (view_layer_attribute(tree, path).outputs["Alpha"] for path in FRONT_IOR_SIGNS)
+    return math_node(tree, "MAXIMUM", *alphas)
 
 
 def _disperser(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
@@ -486,7 +523,7 @@ def compiled(source: str) -> str:
         return bytecode_path.read_text(encoding="utf-8")
 
 
-def _math(tree: bpy.types.NodeTree, operation: str, *operands: bpy.types.NodeSocket | float) -> bpy.types.NodeSocket:
+def math_node(tree: bpy.types.NodeTree, operation: str, *operands: bpy.types.NodeSocket | float) -> bpy.types.NodeSocket:
     """The result of a Math node on sockets and numbers."""
     node = tree.nodes.new("ShaderNodeMath")
     node.operation = operation
@@ -516,7 +553,7 @@ def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.Node
     (1994), the same from inside as from outside: total reflection would hide what lies behind.
     """
     nodes, links = tree.nodes, tree.links
-    math = partial(_math, tree)
+    math = partial(math_node, tree)
     ior = math("MAXIMUM", inputs.outputs["IOR"], LEAST_PREVIEW_IOR)
     normal_reflectance = math("POWER", math("DIVIDE", math("SUBTRACT", ior, 1.0), math("ADD", ior, 1.0)), 2.0)
     edge = math("POWER", nodes.new("ShaderNodeLayerWeight").outputs["Facing"], 5.0)
@@ -533,7 +570,7 @@ def _absorption_coefficients(
     tree: bpy.types.NodeTree, inputs: bpy.types.Node
 ) -> tuple[bpy.types.NodeSocket, bpy.types.NodeSocket]:
     """What the medium absorbs per length, and whether it absorbs at all (0 or 1)."""
-    math = partial(_math, tree)
+    math = partial(math_node, tree)
     channels = tree.nodes.new("ShaderNodeSeparateColor")
     tree.links.new(inputs.outputs["Transmittance"], channels.inputs[0])
     depth = inputs.outputs["Transmittance Depth"]
@@ -560,7 +597,7 @@ def _absorption(
     charged.operation = "SCALE"
     links.new(coefficients, charged.inputs[0])
     links.new(
-        _math(tree, "ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"]), charged.inputs["Scale"]
+        math_node(tree, "ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"]), charged.inputs["Scale"]
     )
     volume = nodes.new("ShaderNodeVolumeCoefficients")
     volume.inputs["Scatter Coefficients"].default_value = (0.0, 0.0, 0.0)
@@ -588,7 +625,11 @@ def _menu(tree: bpy.types.NodeTree, source: bpy.types.NodeSocket, parameter: Par
 
 
 def _requests(
-    tree: bpy.types.NodeTree, inputs: bpy.types.Node, curves_matter: bpy.types.NodeSocket, absorbs: bpy.types.NodeSocket
+    tree: bpy.types.NodeTree,
+    inputs: bpy.types.Node,
+    curves_matter: bpy.types.NodeSocket,
+    absorbs: bpy.types.NodeSocket,
+    analysis_holds: bpy.types.NodeSocket,
 ) -> bpy.types.NodeSocket:
     """One colour that depends on every attribute neighbours read of an object, so that Cycles exports them.
 
@@ -596,7 +637,7 @@ def _requests(
     list is kept short. What a material does not have, or has in no further slot, is multiplied by a constant 0, and Cycles
     drops it.
     """
-    math = partial(_math, tree)
+    math = partial(math_node, tree)
     model = inputs.outputs["Dispersion Model"]
     curve = {
         name: math("MULTIPLY", math("COMPARE", model, float(index), 0.5), curves_matter)
@@ -619,7 +660,8 @@ def _requests(
         (PRIORITY_PROPERTY, "OBJECT", None),
         ("material_slots[1].material.pass_index", "OBJECT", None),
     ]
-    several = math("GREATER_THAN", inputs.outputs[SLOTS_SOCKET], 1.5)
+    one_slot = math("LESS_THAN", inputs.outputs[SLOTS_SOCKET], 1.5)
+    several = math("SUBTRACT", 1.0, math("MULTIPLY", one_slot, analysis_holds))
     names.append(("material_index", "GEOMETRY", several))
     in_others = {name: math("MULTIPLY", several, condition) for name, condition in conditions.items()}
     names += [

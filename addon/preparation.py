@@ -8,10 +8,11 @@ from typing import Any
 
 import bpy
 
-from .analysis import Found, analyse
+from .analysis import Found
 from .checks import Problem, find_problems
 from .compatibility import achromatic_reason, require_blender
 from .lights import update_lights
+from .live import analyse
 from .materials import refresh_spectrum
 from .media import dispersing_materials, media
 from .parameters import ParameterError
@@ -84,14 +85,6 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
         problems += coincident
         if parted:
             found = analyse(scene)
-        problems += [
-            Problem(
-                name,
-                "is told in its linked file of other surroundings than it has here, and shows magenta",
-                "clear the analysis in that file, or make the object and its material local",
-            )
-            for name in found.stale
-        ]
     return Preparation(tuple(changes), tuple(problems + find_problems(scene)), found)
 
 

@@ -13,10 +13,11 @@ from typing import Any
 import bpy
 import numpy as np
 
-from . import analysis
+from .analysis import is_analysed
 from .checks import Problem
 from .compatibility import require_blender, takes_front_ior
 from .lights import refresh_lights
+from .live import analyse
 from .materials import dielectric_node, refresh_spectrum
 from .node_group import (
     FRONT_IOR_VERSION,
@@ -65,8 +66,8 @@ def update_materials() -> tuple[str, ...]:
     _arm_groups()
     if changes:
         for scene in bpy.data.scenes:
-            if analysis.is_analysed(scene):
-                analysis.analyse(scene)
+            if is_analysed(scene):
+                analyse(scene)
     return tuple(changes)
 
 
@@ -312,7 +313,8 @@ class _Leftovers:
         _remove_unused(self.images, bpy.data.images.remove)
         _remove_unused(self.texts, bpy.data.texts.remove)
         tree = find_group()
-        for data in (tree, *_held_by(tree)):
+        lists = [data for data in _held_by(tree) if isinstance(data, bpy.types.NodeTree)]
+        for data in (tree, *_held_by(tree), *(data for held in lists for data in _held_by(held))):
             _take_plain_name(data)
 
 

@@ -63,7 +63,7 @@ Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int
         outer_holders = found.holders;
         s.valid = inner.priority < outer.priority;
       }
-      else if (found.traced && agrees(s.valid, outer, found))
+      else if (found.traced && (!found.complete || agrees(s.valid, outer, found)))
         checks = 0;
       else
         s.mistold = i == 2 || !found.traced; /* twice is no rounding */

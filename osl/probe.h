@@ -5,7 +5,7 @@
 
 /* Crossings one probe may count. A ray through a whole forest meets fewer. */
 #define PROBE_HITS 1024
-/* Priorities that may be open along a probe at the same time. */
+/* Priorities that one run of a probe sums at the same time; where more are open it runs again for those it left. */
 #define PROBE_LEVELS 64
 
 /* The next float after t, so that the surface just met is left behind and the very next one is not. */
@@ -42,6 +42,7 @@ struct Surroundings {
   int holders;        /* objects of its priority that hold the point */
   float own_priority; /* of the surface's object; the material's while nothing asked for it */
   int traced;         /* 0 where Cycles cannot trace rays from shaders, or they tell less than is needed */
+  int complete;       /* 0 where more is in the way than a probe may count */
 };
 
 /* The media that fill the point just off P in the given direction, P's own object left out.
@@ -67,6 +68,8 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
   s.holders = 0;
   s.own_priority = own_priority;
   s.traced = 1;
+  s.complete = 0;
+  float least = 0.0, unsummed = AIR_PRIORITY; /* priorities of this run: from the first on, below the second */
   float t = 0.0;
   for (int i = 0; i < PROBE_HITS; i++) {
     if (!trace(origin, direction, "mindist", t)) {
@@ -74,7 +77,15 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
       int hit = 0;
       if (i == 0)
         s.traced = getmessage("trace", "hit", hit);
-      break;
+      if (unsummed == AIR_PRIORITY || s.medium.priority != AIR_PRIORITY) {
+        s.complete = 1;
+        break;
+      }
+      least = unsummed;
+      unsummed = AIR_PRIORITY;
+      levels = 0;
+      t = 0.0;
+      continue;
     }
     float distance = 0.0, self = 0.0;
     getmessage("trace", "hitdist", distance);
@@ -88,7 +99,7 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
       s.traced = 0;
       return s;
     }
-    if (priority >= AIR_PRIORITY || priority > s.medium.priority || (level >= 0.0 && priority != level))
+    if (priority >= unsummed || priority < least || priority > s.medium.priority || (level >= 0.0 && priority != level))
       continue;
     if (!known) {
       known = 1;
@@ -97,8 +108,22 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
     int k = 0;
     while (k < levels && open[k] != priority)
       k++;
-    if (k == PROBE_LEVELS)
-      continue;
+    if (k == levels && levels == PROBE_LEVELS) {
+      /* A sum that is back at 0 says as much as none. */
+      k = 0;
+      while (k < levels && sum[k] != 0)
+        k++;
+      if (k == levels) {
+        k = 0;
+        for (int other = 1; other < levels; other++)
+          k = (open[other] > open[k]) ? other : k;
+        unsummed = max(open[k], priority);
+        if (unsummed == priority)
+          continue;
+      }
+      open[k] = priority;
+      sum[k] = 0;
+    }
     if (k == levels) {
       open[k] = priority;
       sum[k] = 0;
@@ -109,13 +134,16 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
       s.medium = hit_medium(priority, slot, curves, wavelength);
       if (slot == UNREADABLE_SLOT)
         s.traced = 0;
-      if (priority <= s.own_priority || !s.traced)
+      s.complete = priority <= s.own_priority;
+      if (s.complete || !s.traced)
         return s;
     }
     if (priority == s.medium.priority)
       s.holders = sum[k];
-    if (level >= 0.0)
+    if (level >= 0.0) {
+      s.complete = 1;
       return s;
+    }
   }
   return s;
 }
@@ -132,7 +160,8 @@ int agrees(int valid, Medium outer, Surroundings found)
            length((vector)(found.medium.transmittance - outer.transmittance)) < 1e-3));
 }
 
-/* Whether any medium fills the point just off P, P's own object left out; `traced` as in Surroundings. */
+/* Whether any medium fills the point just off P, P's own object left out; not, if more is in the way than a probe may
+ * count. `traced` as in Surroundings. */
 int lies_in_a_medium(point origin, vector direction, output int traced)
 {
   int sum = 0;
@@ -141,7 +170,7 @@ int lies_in_a_medium(point origin, vector direction, output int traced)
     if (!trace(origin, direction, "mindist", t)) {
       int hit = 0;
       traced = i > 0 || getmessage("trace", "hit", hit);
-      break;
+      return sum > 0;
     }
     float distance = 0.0, self = 0.0;
     float priority[4];
@@ -151,7 +180,7 @@ int lies_in_a_medium(point origin, vector direction, output int traced)
     if (self == 0.0 && getmessage("trace", OBJECT_PRIORITY, priority))
       sum += hit_crossing(direction);
   }
-  return sum > 0;
+  return 0;
 }
 
 /* How far a ray from inside a medium runs in it: to the surface where it ends, to a foreign object if those stop it, or

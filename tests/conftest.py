@@ -14,6 +14,15 @@ def pytest_collection_modifyitems(items):
 
 
 @pytest.fixture(autouse=True)
+def nothing_is_followed_any_more():
+    """An analysis keeps a session's scenes analysed; each test begins as a session does."""
+    yield
+    live = sys.modules.get("nested_dielectric.live")
+    if live is not None and not sys.modules["nested_dielectric.registration"].is_registered():
+        live.remove()
+
+
+@pytest.fixture(autouse=True)
 def renders_nothing(request):
     """Hold tests that are marked as quick to it."""
     if request.node.get_closest_marker("quick") is None:

@@ -10,10 +10,11 @@ import pytest
 from mathutils import Matrix
 
 import nested_dielectric as nd
-from nested_dielectric import analysis, registration
+from nested_dielectric import analysis, live
 from nested_dielectric.analysis import Found
 from nested_dielectric.contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE
-from nested_dielectric.node_group import BY_OBJECT, FACE_ATTRIBUTE, OBJECT_PROPERTIES
+from nested_dielectric.identity import SCENE_PROPERTY
+from nested_dielectric.node_group import BY_OBJECT, FACE_ATTRIBUTE, OBJECT_PROPERTIES, SCENE_SOCKET
 from scenes import (
     add,
     add_box,
@@ -1160,30 +1161,49 @@ def test_what_is_the_same_in_renders_is_not_doubted():
 # Others' files and scenes -------------------------------------------------------------------------------------------
 
 
+def holds_in(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
+    """Whether an object's medium believes in a scene what it carries."""
+    number = inputs(media_of(obj)[0])[SCENE_SOCKET].default_value
+    return number != 0 and number == scene.get(SCENE_PROPERTY)
+
+
 @pytest.mark.parametrize("instanced", [False, True], ids=["linked", "instanced"])
-def test_an_object_that_is_in_another_scene_too_is_told_nothing(instanced):
-    """There something else may surround it."""
+def test_an_object_in_two_scenes_is_told_of_the_one_that_was_analysed_last(instanced):
+    """In the other something else may surround it."""
     scene, bead = ordinary_scene()
     if instanced:
         instance(into_collection(bead))
     other = scene.copy()
+    other.collection.objects.unlink(bpy.data.objects["Water"])
     nd.analyse(scene)
-    assert told_code(bead) == PROBE
-    assert nd.analyse(other).known == ()
-    assert told_code(bead) == PROBE
+    assert told_code(bead) == MEDIUM and holds_in(scene, bead) and not holds_in(other, bead)
+    nd.analyse(other)
+    assert told_code(bead) == AIR and holds_in(other, bead) and not holds_in(scene, bead)
 
 
-def test_a_material_in_another_scene_tells_nothing_of_this_one():
-    """Objects of this scene may be told by themselves."""
+def test_what_one_scene_tells_stays_when_another_is_analysed_or_cleared():
     scene, bead = ordinary_scene()
-    far = bpy.data.objects.new("Far", bead.data)
-    nd.set_priority(far, 1)
     other = bpy.data.scenes.new("Other")
+    far = bpy.data.objects.new("Far", bpy.data.meshes["Bead"].copy())
+    far.data.materials[0] = medium("Far", 1.5)
     other.collection.objects.link(far)
     nd.analyse(scene)
-    assert told_code(bead) in (PROBE, MEDIUM) and told_code(far) == PROBE
+    before = {name: told for name, told in snapshot().items() if "Far" not in name}
     nd.analyse(other)
-    assert told_code(bead) in (PROBE, MEDIUM) and told_code(far) in (PROBE, AIR)
+    assert told_code(far) == AIR
+    nd.clear_analysis(other)
+    assert told_code(far) == PROBE
+    assert {name: told for name, told in snapshot().items() if "Far" not in name} == before
+    live.analyse_before_render(scene)
+    assert analysis.last_found(scene).known and analysis.last_found(other) is None
+
+
+def test_a_copied_scene_gets_a_number_of_its_own():
+    scene, _ = ordinary_scene()
+    nd.analyse(scene)
+    copy = scene.copy()
+    nd.analyse(copy)
+    assert copy[SCENE_PROPERTY] != scene[SCENE_PROPERTY]
 
 
 def test_a_scene_that_is_not_in_the_window_is_looked_at():
@@ -1216,12 +1236,10 @@ def test_a_linked_material_is_left_as_it_is(tmp_path):
     assert told_by_material(linked) == before and told_code(outside) == PROBE
 
 
-def linked_scene(folder) -> tuple[bpy.types.Scene, bpy.types.Object, dict[str, int]]:
-    """A scene with an instance of a linked collection of media that know their surroundings, and what they knew."""
+def test_linked_media_ask_whatever_their_file_tells_them(tmp_path):
     ordinary_scene()
-    ball("Second Bead", 0.1, bpy.data.materials["Bead"], 1, (-5.0, 0.0, 0.0))
     nd.analyse(bpy.context.scene)
-    file = str(folder / "library.blend")
+    file = str(tmp_path / "library.blend")
     collection = into_collection(*bpy.data.objects)
     collection.name = "Linked"
     known = codes()
@@ -1229,54 +1247,35 @@ def linked_scene(folder) -> tuple[bpy.types.Scene, bpy.types.Object, dict[str, i
     scene = fresh()
     with bpy.data.libraries.load(file, link=True) as (_, wanted):
         wanted.collections = ["Linked"]
-    return scene, instance(wanted.collections[0], (0.0, 3.0, 0.0)), known
-
-
-def test_linked_media_that_know_what_is_true_are_left_at_it(tmp_path):
-    scene, _, known = linked_scene(tmp_path)
+    instance(wanted.collections[0], (0.0, 3.0, 0.0))
+    own = ball("Own", 0.3, medium("Own", 1.7), 0, (5.4, 3.0, 0.0))
     found = nd.analyse(scene)
-    assert not found.stale and not found.doubts
-    assert codes() == known and {FACES, MEDIUM, AIR} <= set(known.values())
-    assert set(found.partly) == {"Water", "Crossing"}
+    assert codes() == known | {"Own": FACES} and not found.doubts
+    assert holds_in(scene, own) and not any(holds_in(scene, bpy.data.objects[name]) for name in known)
+    assert set(found.asking) == set(known) and found.partly == ("Own",)
 
 
-def shadowed_by_a_local_medium() -> set[str]:
-    ball("Local", 0.3, medium("Local", 1.7), 0, (5.4, 3.0, 0.0))
-    return {"Bystander"}
-
-
-def crossed_by_a_local_medium() -> set[str]:
-    ball("Local", 0.3, medium("Local", 1.7), 0, (-1.0, 3.0, 0.0))
-    return {"Water"}
-
-
-def around_a_linked_bead() -> set[str]:
-    ball("Local", 0.3, medium("Local", 1.7), 6, (-5.0, 3.0, 0.0))
-    return {"Second Bead"}
-
-
-def something_foreign_at_the_crossing() -> set[str]:
-    ball("Foreign", 0.1, diffuse(), None, (0.9, 3.0, 0.0))
-    return {"Water", "Crossing"}
-
-
-@pytest.mark.parametrize(
-    "change",
-    [
-        shadowed_by_a_local_medium,
-        crossed_by_a_local_medium,
-        around_a_linked_bead,
-        something_foreign_at_the_crossing,
-    ],
-    ids=lambda change: change.__name__,
-)
-def test_linked_media_that_know_what_is_not_true_here_are_named_with_a_remedy(change, tmp_path):
-    scene, _, known = linked_scene(tmp_path)
-    stale = change()
-    done = nd.prepare(scene)
-    assert set(done.found.stale) == stale
-    assert {problem.name for problem in done.problems if "linked file" in str(problem)} == stale
-    assert all("make the object and its material local" in str(p) for p in done.problems if p.name in stale)
+def test_a_linked_object_and_a_local_one_of_its_name_are_two(tmp_path):
+    ordinary_scene()
+    file = str(tmp_path / "library.blend")
+    bpy.data.libraries.write(file, {bpy.data.objects["Bead"]})
+    scene, bead = ordinary_scene()
+    with bpy.data.libraries.load(file, link=True) as (_, wanted):
+        wanted.objects = ["Bead"]
+    (linked,) = wanted.objects
+    scene.collection.objects.link(linked)
+    bead.location.x = 30.0
+    nd.register()
+    try:
+        nd.analyse(scene)
+        before = codes()
+        bead.location.x = 31.0
+        bpy.context.view_layer.update()
+        followed = snapshot()
+        nd.analyse(scene)
+        assert followed == snapshot() and codes() == before
+    finally:
+        nd.unregister()
 
 
 # Writing ------------------------------------------------------------------------------------------------------------
@@ -1331,6 +1330,7 @@ def test_clearing_leaves_no_trace():
     nd.analyse(scene)
     assert traces()[2] != before[2]
     nd.clear_analysis(scene)
+    del scene[SCENE_PROPERTY]  # a scene keeps its number
     assert traces() == before
 
 
@@ -1351,6 +1351,7 @@ def test_media_that_lose_their_material_keep_no_trace():
         bpy.data.objects[name].active_material = diffuse()
     nd.analyse(scene)
     nd.clear_analysis(scene)
+    del scene[SCENE_PROPERTY]
     assert traces()[:2] == before[:2]
 
 
@@ -1511,6 +1512,7 @@ def stale_shapes() -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
     changes["what it is told by itself is wrong"] = tell_wrongly
 
     assert not nd.analyse(cells.scene).doubts
+    live.remove()
     for name in SHAPES:
         changes[name]()
     stale = render(ALARM_SAMPLES)
@@ -1551,6 +1553,7 @@ def stale_values() -> dict[str, np.ndarray]:
     foreign = ball("Foreign", 0.5, diffuse(0.8))
     foreign.location.z = 100.0
     assert not nd.analyse(cells.scene).doubts
+    live.remove()
     for name, socket, value in zip(
         VALUES, ("IOR", "Transmittance", "Transmittance Depth"), (1.5, (0.4, 0.4, 0.4, 1.0), 0.1)
     ):
@@ -1667,9 +1670,9 @@ def with_extension():
 @pytest.fixture
 def in_window(with_extension, monkeypatch):
     """As in a window, except that nothing comes to rest by itself and no look is quick."""
-    monkeypatch.setattr(registration, "has_window", lambda: True)
+    monkeypatch.setattr(live, "has_window", lambda: True)
     monkeypatch.setattr(analysis, "PATIENCE", 0.0)
-    monkeypatch.setattr(registration, "REST", 1e9)
+    monkeypatch.setattr(live, "REST", 1e9)
 
 
 def analysed_scene() -> tuple[bpy.types.Scene, bpy.types.Object]:
@@ -1701,7 +1704,7 @@ def test_in_a_window_what_may_have_changed_asks_until_all_rests(change, in_windo
     for _ in range(3):  # what is told comes back as updates
         bpy.context.view_layer.update()
     meanwhile = everything_heard()
-    assert registration.analyse_at_rest() is None
+    assert live.analyse_at_rest() is None
     at_rest = snapshot()
     nd.analyse(scene)
     assert at_rest == snapshot()
@@ -1737,7 +1740,7 @@ def test_in_a_window_nothing_untrue_is_told_while_media_move(seed, in_window):
         asking += sum(asks)
         telling += len(asks) - sum(asks)
         if rng.random() < 0.5:
-            registration.analyse_at_rest()
+            live.analyse_at_rest()
         else:
             nd.analyse(scene)
         assert_no_more_heard(meanwhile, everything_heard())
@@ -1836,7 +1839,7 @@ def test_in_a_window_all_that_know_a_priority_ask_when_another_body_of_it_moves(
     other.location.x = 1.9
     bpy.context.view_layer.update()
     assert not hears_of("Water", priority)
-    registration.analyse_at_rest()
+    live.analyse_at_rest()
     assert codes()["Partner"] == FACES and not hears_of("Water", priority)
 
 
@@ -1869,9 +1872,9 @@ def test_in_a_window_nothing_is_analysed_while_the_mouse_works(in_window, monkey
     scene, bead = analysed_scene()
     bead.location.x = 0.1
     bpy.context.view_layer.update()
-    assert bpy.app.timers.is_registered(registration.analyse_at_rest)
-    monkeypatch.setattr(registration, "is_at_work", lambda: True)
-    assert registration.analyse_at_rest() == registration.REST
+    assert bpy.app.timers.is_registered(live.analyse_at_rest)
+    monkeypatch.setattr(live, "is_at_work", lambda: True)
+    assert live.analyse_at_rest() == live.REST
     assert codes()["Bead"] == PROBE
 
 
@@ -1882,9 +1885,9 @@ def test_a_mesh_that_is_sculpted_is_not_told_by_faces(in_window):
     bpy.context.view_layer.objects.active = bpy.data.objects["Water"]
     bpy.ops.object.mode_set(mode="SCULPT")
     bpy.context.view_layer.update()
-    registration.analyse_at_rest()
+    live.analyse_at_rest()
     assert codes() == {"Water": PROBE, "Bead": MEDIUM, "Crossing": FACES, "Bystander": AIR}
     bpy.ops.object.mode_set(mode="OBJECT")
     bpy.context.view_layer.update()
-    registration.analyse_at_rest()
+    live.analyse_at_rest()
     assert codes()["Water"] == FACES

@@ -232,7 +232,7 @@ def test_prepare_lists_the_lamps_of_the_lobe_once():
     assert not any("Lamps" in change for change in nd.prepare(scene).changes)
     lamp.visible_transmission = True
     assert any("Lamps" in change for change in nd.prepare(scene).changes)
-    assert lights.listed_lamps() == []
+    assert lights.listed_lamps(bpy.context.scene) == []
 
 
 def floor_below(**keywords):

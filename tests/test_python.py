@@ -301,6 +301,7 @@ def test_the_shader_takes_exactly_the_tables_parameters():
         "ForeignNear",
         "AroundMedium",
         "AroundTransmittance",
+        "AnalysisHolds",
         "Requests",
         "FrontIOR",
         "CountsPortals",

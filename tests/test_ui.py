@@ -560,13 +560,13 @@ def test_a_button_gives_the_selected_lamps_to_the_lobe_and_back_and_all_where_no
     bpy.context.scene.objects["A"].select_set(False)
     assert bpy.ops.nested_dielectric.lamp_carrier(carrier="LOBE") == {"FINISHED"}
     assert carriers() == {"A": "RAYS", "B": "LOBE"}
-    assert [lamp.name for lamp in lights.listed_lamps()] == ["B"]
+    assert [lamp.name for lamp in lights.listed_lamps(bpy.context.scene)] == ["B"]
     bpy.context.scene.objects["B"].select_set(False)
     bpy.ops.nested_dielectric.lamp_carrier(carrier="LOBE")
     assert carriers() == {"A": "LOBE", "B": "LOBE"}
     bpy.ops.nested_dielectric.lamp_carrier(carrier="RAYS")
     assert carriers() == {"A": "RAYS", "B": "RAYS"}
-    assert lights.listed_lamps() == []
+    assert lights.listed_lamps(bpy.context.scene) == []
     bpy.ops.nested_dielectric.lamp_carrier(carrier="RAYS")
     output = "".join(capfd.readouterr())
     for report in ("Lobes refract B", "Lobes refract A", "Rays refract A, B", "Nothing to change"):
@@ -601,7 +601,7 @@ def test_undo_takes_a_lamp_caustics_and_passes_back():
     assert state() == ("LOBE", False, False)
     bpy.ops.ed.undo()
     assert state() == ("RAYS", False, False)
-    assert lights.listed_lamps() == []
+    assert lights.listed_lamps(bpy.context.scene) == []
 
 
 def test_operators_on_the_scene_report_what_they_changed(capfd):

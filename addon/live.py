@@ -1,0 +1,212 @@
+"""Keeping what media are told true while a session lasts: after updates, on every frame, before renders and saving.
+
+The handlers are put in by :func:`analyse`, too, so that a script that never registers the extension renders what is there.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterator
+
+import bpy
+
+from . import analysis
+from .identity import NO_SCENE, known_number
+from .lights import update_lights
+
+REST = 0.3
+"""Seconds without a change after which a scene in a window is analysed."""
+
+
+def analyse(scene: bpy.types.Scene) -> analysis.Found:
+    """Look at the media of a scene, and tell each what surrounds it. The scene's media are kept analysed from then on, in
+    this session by handlers of frames, updates and renders.
+
+    Linked materials and objects are left as they are: they ask the scene.
+    """
+    install()
+    return _analyse(scene)
+
+
+def install() -> None:
+    """Put the handlers in; a second call changes nothing."""
+    for handlers, handler in _handlers():
+        if handler not in handlers:
+            handlers.append(handler)
+
+
+def remove() -> None:
+    """Take the handlers and the timer out."""
+    for handlers, handler in _handlers():
+        while handler in handlers:
+            handlers.remove(handler)
+    stop_timer()
+
+
+def _handlers() -> tuple[tuple[list, Callable], ...]:
+    handlers = bpy.app.handlers
+    return (
+        (handlers.render_init, analyse_before_render),
+        (handlers.render_pre, come_last),
+        (handlers.frame_change_post, analyse_after_frame_change),
+        (handlers.depsgraph_update_post, analyse_after_update),
+        (handlers.load_post, distrust_loaded),
+        (handlers.save_pre, narrow_before_save),
+        (handlers.save_post, widen_after_save),
+        (handlers.undo_post, forget_shapes),
+        (handlers.redo_post, forget_shapes),
+    )
+
+
+def frame_scripts() -> Iterator[Callable]:
+    """Yield others' handlers that may change a scene on every frame."""
+    ours = analyse_before_render.__module__.rpartition(".")[0]
+    for name in ("frame_change_pre", "frame_change_post", "render_pre", "render_init"):
+        for handler in getattr(bpy.app.handlers, name):
+            if not getattr(handler, "__module__", "").startswith(ours):
+                yield handler
+
+
+def _analyse(scene: bpy.types.Scene) -> analysis.Found:
+    found = analysis.analyse(scene)
+    _trust(scene)
+    return found
+
+
+def _trust(scene: bpy.types.Scene) -> None:
+    analysis.trust(scene, every_frame=not any(frame_scripts()))
+
+
+def _analysed_scenes() -> list[bpy.types.Scene]:
+    return [scene for scene in bpy.data.scenes if analysis.is_analysed(scene) and scene.library is None]
+
+
+def in_main_thread() -> bool:
+    """Whether data may be written: a render in a window has a thread of its own."""
+    return threading.current_thread() is threading.main_thread()
+
+
+def has_window() -> bool:
+    """Whether somebody may wait for Blender to answer the mouse."""
+    return not bpy.app.background
+
+
+@bpy.app.handlers.persistent
+def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
+    """Make sure that the media know what surrounds them now, and the lamps that their lobes carry. In a window updates have
+    been followed.
+    """
+    if not in_main_thread():
+        return
+    if known_number(scene) != NO_SCENE:
+        update_lights(scene)
+    if analysis.is_analysed(scene):
+        _analyse(scene)
+
+
+@bpy.app.handlers.persistent
+def come_last(*_: object) -> None:
+    """See each frame after all scripts have changed it."""
+    handlers = bpy.app.handlers.frame_change_post
+    if handlers[-1:] != [analyse_after_frame_change] and in_main_thread():
+        handlers.remove(analyse_after_frame_change)
+        handlers.append(analyse_after_frame_change)
+
+
+@bpy.app.handlers.persistent
+def analyse_after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
+    """Follow what scripts change on a frame, of which no update tells. Between frames, where only motion blur looks, nothing
+    may be told anew.
+
+    The scene is looked at as the viewport evaluates it: to update the render's own evaluation here would hide from Cycles
+    what has changed.
+    """
+    if not analysis.is_analysed(scene) or scene.frame_subframe != 0.0 or not in_main_thread():
+        return
+    if not any(frame_scripts()):
+        return
+    if has_window():
+        analysis.distrust(scene)
+        _wait_for_rest()
+        return
+    _analyse(scene)
+
+
+@bpy.app.handlers.persistent
+def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Follow what moves, changes, comes and goes. In a window nothing is to wait while the mouse drags it."""
+    if not analysis.is_analysed(scene):
+        return
+    if not has_window():
+        analysis.follow(scene, depsgraph)
+    elif analysis.hold(scene, depsgraph):
+        _wait_for_rest()
+    _trust(scene)
+
+
+def _wait_for_rest() -> None:
+    stop_timer()
+    bpy.app.timers.register(analyse_at_rest, first_interval=REST)
+
+
+def analyse_at_rest() -> float | None:
+    """Analyse what has changed in windows, or return the seconds to wait before another call."""
+    if is_at_work():
+        return REST
+    for scene in _analysed_scenes():
+        analysis.settle(scene)
+        _trust(scene)
+    return None
+
+
+def stop_timer() -> None:
+    """Do not analyse at rest any more."""
+    if bpy.app.timers.is_registered(analyse_at_rest):
+        bpy.app.timers.unregister(analyse_at_rest)
+
+
+def is_at_work() -> bool:
+    """Whether the mouse transforms or shapes something, an animation plays, or a picture is rendered."""
+    windows = bpy.context.window_manager.windows
+    return (
+        bpy.app.is_job_running("RENDER")
+        or any(window.screen.is_animation_playing for window in windows)
+        or any(
+            operator.bl_idname.startswith(("TRANSFORM_OT_", "SCULPT_OT_"))
+            for window in windows
+            for operator in window.modal_operators
+        )
+    )
+
+
+@bpy.app.handlers.persistent
+def distrust_loaded(*_: object) -> None:
+    """Believe nothing that a file tells: it may have been changed without the extension. Nobody waits for a look at it."""
+    analysis.forget_shapes()
+    for scene in _analysed_scenes():
+        analysis.distrust(scene)
+        if has_window():
+            _wait_for_rest()
+
+
+@bpy.app.handlers.persistent
+def narrow_before_save(*_: object) -> None:
+    """Save what holds without the extension, too: on the present frame, as no one will see what scripts do on others."""
+    for scene in _analysed_scenes():
+        if any(frame_scripts()):
+            analysis.distrust(scene)
+        analysis.settle(scene)
+        analysis.trust(scene, every_frame=False)
+
+
+@bpy.app.handlers.persistent
+def widen_after_save(*_: object) -> None:
+    """Go on as before."""
+    for scene in _analysed_scenes():
+        _trust(scene)
+
+
+@bpy.app.handlers.persistent
+def forget_shapes(*_: object) -> None:
+    """Undoing changes meshes without an update that names them."""
+    analysis.forget_shapes()
