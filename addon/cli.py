@@ -22,7 +22,7 @@ from .files import absolute, ending_at_once, replacing
 from .iced_water import build_scene
 from .jf import JfError, read_nodes, report, translate
 from .materials import dielectric_node, new_material
-from .output import check_picture, save_blend
+from .output import check_picture, reason, save_blend
 from .parameters import ParameterError
 from .preparation import prepare
 from .presets import load_preset, preset_names
@@ -290,5 +290,5 @@ def _write_table(draft: Path, path: Path, table: np.ndarray, metadata: dict[str,
     file = oiio.ImageOutput.create("exr")
     done = file.open(os.fsencode(draft), picture) and file.write_image(table[None])
     if not (file.close() and done):
-        raise _Failure(f"{path}: cannot be written ({file.geterror()})")
+        raise _Failure(f"{path}: was not written whole ({reason(file.geterror(), draft, path)})")
     check_picture(draft, path, (len(table), 1), 4)

@@ -30,14 +30,14 @@ def check_picture(file: Path, path: Path | str, size: tuple[int, int] | None = N
 
     picture = oiio.ImageInput.open(os.fsencode(file))
     if picture is None:
-        raise WriteError(f"{path}: was not written whole ({_first_line(oiio.geterror())}); is the disk full?")
+        raise WriteError(f"{path}: was not written whole ({reason(oiio.geterror(), file, path)}); is the disk full?")
     try:
         layer = 0
         while picture.seek_subimage(layer, 0):
             spec = picture.spec()
             pixels = picture.read_image(layer, 0, 0, spec.nchannels, oiio.UNKNOWN)
             if pixels is None or picture.has_error:
-                raise WriteError(f"{path}: was not written whole ({_first_line(picture.geterror())}); is the disk full?")
+                raise WriteError(f"{path}: was not written whole ({reason(picture.geterror(), file, path)}); is the disk full?")
             if size is not None and (spec.width, spec.height) != size:
                 raise WriteError(f"{path}: was written with {spec.width} x {spec.height} pixels instead of {size[0]} x {size[1]}")
             if spec.nchannels < channels:
@@ -64,7 +64,7 @@ def save_blend(path: Path | str) -> Path:
             with bpy.data.libraries.load(str(draft)) as (held, _):
                 whole = set(held.scenes) == {scene.name for scene in bpy.data.scenes if scene.library is None}
         except (OSError, RuntimeError) as error:
-            raise WriteError(f"{path}: was not written whole ({_first_line(str(error))}); is the disk full?") from error
+            raise WriteError(f"{path}: was not written whole ({reason(error, draft, path)}); is the disk full?") from error
         if not whole:
             raise WriteError(f"{path}: was not written whole; is the disk full?")
         try:
@@ -78,15 +78,17 @@ def _keep_versions(target: Path, count: int) -> None:
     """Number what was there, the newest 1; it stays in its place, too."""
     names = [target.with_name(f"{target.name}{number or ''}") for number in range(count + 1)]
     for older, newer in pairwise(reversed(names)):
-        if newer == target and target.exists():
+        if newer == target and os.path.exists(target):
             older.unlink(missing_ok=True)
             try:
                 os.link(target, older)
             except OSError:
                 shutil.copy2(target, older)
-        elif newer.exists():
+        elif os.path.exists(newer):
             os.replace(newer, older)
 
 
-def _first_line(text: str) -> str:
-    return (text.strip().splitlines() or ["it cannot be read"])[0].removeprefix("Error: ")
+def reason(error: object, file: Path, path: Path | str) -> str:
+    """Return in one line what Blender or OpenImageIO say of a temporary file, as said of the path that it is for."""
+    text = " ".join(str(error).split()).removeprefix("Error: ") or "it cannot be read"
+    return text.replace(str(file), Path(path).name).replace(file.name, Path(path).name)

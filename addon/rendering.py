@@ -13,7 +13,7 @@ from typing import Any
 import bpy
 
 from .files import WriteError, absolute, ending_at_once, replacing, replacing_in
-from .output import check_picture
+from .output import check_picture, reason
 from .passes import file_outputs
 
 FILE_FORMATS = {
@@ -85,9 +85,13 @@ def render_frame(
         report = _progress_handler(progress)
         bpy.app.handlers.render_stats.append(report)
         undo.callback(bpy.app.handlers.render_stats.remove, report)
-        with bpy.context.temp_override(scene=scene):
-            if bpy.ops.render.render(write_still=True) != {"FINISHED"}:
-                raise RenderError(f"scene {scene.name!r}: the render was cancelled")
+        try:
+            with bpy.context.temp_override(scene=scene):
+                done = bpy.ops.render.render(write_still=True)
+        except RuntimeError as error:
+            raise RenderError(f"{output}: was not written ({reason(error, draft, output)})") from None
+        if done != {"FINISHED"}:
+            raise RenderError(f"scene {scene.name!r}: the render was cancelled")
         check_picture(draft, output, _size(scene.render), _CHANNELS[scene.render.image_settings.color_mode])
     return absolute(output)
 
@@ -166,8 +170,8 @@ def _folder(scene: bpy.types.Scene, node: bpy.types.CompositorNodeOutputFile) ->
         try:
             return Path(scene.render.frame_path(frame=scene.frame_current)).parent
         except RuntimeError as error:
-            reason = " ".join(str(error).split()).removeprefix("Error: ")
-            raise RenderError(f"{node.name!r} of the compositor: {reason}") from None
+            text = " ".join(str(error).split()).removeprefix("Error: ")
+            raise RenderError(f"{node.name!r} of the compositor: {text}") from None
 
 
 def _progress_handler(progress: Callable[[int, int], None] | None) -> Callable:
