@@ -47,15 +47,18 @@ def main(arguments: list[str] | None = None) -> int:
         return int(stop.code or 0)
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # for file names that are no text
+    bpy.utils.expose_bundled_modules()  # Script nodes of a file that is opened keep their sockets with it alone
     try:
-        with ending_at_once():
+        with ending_at_once(bpy.app.tempdir):
             options.run(options)
             sys.stdout.flush()
     except BrokenPipeError:  # whoever read it has enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except (_Failure, JfError, ParameterError, SpectrumError, OSError, RuntimeError) as error:
-        print(f"{PROGRAM}: error: {' '.join(str(error).split())}", file=sys.stderr)
+        named = isinstance(error, OSError) and error.filename
+        text = f"{error.filename}: {error.strerror}" if named else str(error).replace("Error: ", "")
+        print(f"{PROGRAM}: error: {' '.join(text.split())}", file=sys.stderr)
         return 1
     return 0
 
@@ -66,7 +69,7 @@ def _parser() -> argparse.ArgumentParser:
 
     demo = commands.add_parser("demo", help="model the glass of iced water and render it", allow_abbrev=False)
     demo.add_argument(
-        "-o", "--output", type=Path, default=DEMO_OUTPUT, help=f"picture to write (default: {DEMO_OUTPUT})"
+        "-o", "--output", type=_file, default=DEMO_OUTPUT, help=f"picture to write (default: {DEMO_OUTPUT})"
     )
     demo.add_argument("--samples", type=_positive, help="samples per pixel")
     demo.add_argument("--save", type=_blend, metavar="FILE.blend", help="also save the scene")
@@ -77,7 +80,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     _add_file(render)
     render.add_argument(
-        "-o", "--output", type=Path, required=True, help="picture to write; its ending chooses the format"
+        "-o", "--output", type=_file, required=True, help="picture to write; its ending chooses the format"
     )
     render.add_argument("--samples", type=_positive, help="samples per pixel (default: the scene's)")
     render.add_argument("--frame", type=int, help="frame to render (default: the current one)")
@@ -119,9 +122,9 @@ def _parser() -> argparse.ArgumentParser:
         "--keep-negative", action="store_true", help="keep the negative parts of colours outside the gamut"
     )
     bake.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="TABLE.exr", help="picture to write, a pixel an entry"
+        "-o", "--output", type=_file, required=True, metavar="TABLE.exr", help="picture to write, a pixel an entry"
     )
-    bake.add_argument("--plot", type=Path, metavar="PLOT.png", help="also draw it; needs matplotlib")
+    bake.add_argument("--plot", type=_file, metavar="PLOT.png", help="also draw it; needs matplotlib")
     bake.set_defaults(run=_bake)
 
     migration = commands.add_parser(
@@ -131,7 +134,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     migration.add_argument("file", type=Path, metavar="FILE", help="an Arnold scene (.ass), or parameters (.json)")
     migration.add_argument(
-        "-o", "--output", type=Path, metavar="FILE.blend", help="file to write (default: beside FILE, if it is new)"
+        "-o", "--output", type=_file, metavar="FILE.blend", help="file to write (default: beside FILE, if it is new)"
     )
     migration.set_defaults(run=_import_jf)
     return parser
@@ -147,8 +150,14 @@ def _add_saved(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", type=_blend, metavar="OUT.blend", help="file to write (default: FILE itself)")
 
 
+def _file(text: str) -> Path:
+    if not text or text.endswith(("/", os.sep)):
+        raise argparse.ArgumentTypeError(f"{text!r} is no file's name")
+    return Path(text)
+
+
 def _blend(text: str) -> Path:
-    path = Path(text)
+    path = _file(text)
     if path.suffix.lower() != ".blend":
         raise argparse.ArgumentTypeError(f"{text}: the ending must be .blend")
     return path
@@ -193,7 +202,7 @@ def _render(options: argparse.Namespace) -> None:
 def _prepare(options: argparse.Namespace) -> None:
     scene = _open(options.file)
     print(prepare(scene))
-    save_blend(options.output or bpy.data.filepath)
+    print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
 
 
 def _update(options: argparse.Namespace) -> None:
@@ -201,7 +210,7 @@ def _update(options: argparse.Namespace) -> None:
     changes = update_materials()
     print("\n".join(changes) or "nothing to change")
     if changes or options.output:
-        save_blend(options.output or bpy.data.filepath)
+        print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
 
 
 def _presets(options: argparse.Namespace) -> None:
@@ -280,7 +289,6 @@ def _draw(path: Path, distribution: str, table: np.ndarray) -> bytes:
 
 
 def _write_table(draft: Path, path: Path, table: np.ndarray, metadata: dict[str, str | float | int]) -> None:
-    bpy.utils.expose_bundled_modules()
     import OpenImageIO as oiio  # Blender's own copy
 
     picture = oiio.ImageSpec(len(table), 1, 4, oiio.FLOAT)

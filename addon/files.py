@@ -32,13 +32,13 @@ class WriteError(RuntimeError):
 
 @contextmanager
 def replacing(path: Path | str) -> Iterator[Path]:
-    """Yield a path in the same folder and with the same ending, in lower case; what the block writes to it takes the file's
-    place at the end.
+    """Yield a path in the same folder and with the same ending, in lower case; what the block writes to it takes the
+    file's place at the end.
 
-    Whatever the block raises leaves the old file as it was, and nothing else behind; missing folders are made. A path is
-    the operating system's: braces, ``#`` and ``//``, which Blender reads in its own way, stand for themselves.
+    Whatever the block raises leaves the old file as it was, and nothing else behind; missing folders are made. A path
+    is the operating system's: braces, ``#`` and ``//``, which Blender reads in its own way, stand for themselves.
 
-    :raises WriteError: before the block, if no file can be written there; for an OSError in it, or if it writes no file.
+    :raises WriteError: before the block, if no file can be written there; for an OSError in it; if it writes no file.
     """
     target = absolute(path)
     with _blaming(path), _draft(target.parent, target.suffix.lower()) as draft:
@@ -54,7 +54,7 @@ def replacing_in(folder: Path | str) -> Iterator[Path]:
 
     Whatever the block raises leaves the old files as they were.
 
-    :raises WriteError: before the block, if no files can be written there; for an OSError in it; or for a file that cannot
+    :raises WriteError: before the block, if no files can be written there; for an OSError in it; for a file that cannot
         take its place.
     """
     place = absolute(folder)
@@ -76,12 +76,14 @@ def absolute(path: Path | str) -> Path:
 
 
 @contextmanager
-def ending_at_once() -> Iterator[None]:
+def ending_at_once(folder: Path | str | None = None) -> Iterator[None]:
     """Let Ctrl-C and other requests to end take effect at once, whatever the main thread does.
 
     Python's own handlers wait until Blender's code returns, which nobody can break off while it renders. So meanwhile a
-    thread listens; it removes unfinished files and ends the process as of the signal. Requests that the caller handles or
-    ignores stay his, and all of them at an interactive prompt and off the main thread.
+    thread listens; it removes unfinished files and ends the process as of the signal. Requests that the caller handles
+    or ignores stay his, and all of them at an interactive prompt and off the main thread.
+
+    :param folder: one that goes, too, if it is empty then.
     """
     ours = _unhandled()
     if not ours:
@@ -90,7 +92,7 @@ def ending_at_once() -> Iterator[None]:
     with ExitStack() as undo:
         reader, writer = socket.socketpair()
         undo.callback(reader.close)
-        listener = threading.Thread(target=_listen, args=(reader, ours), name="Nested Dielectric signals", daemon=True)
+        listener = threading.Thread(target=_listen, args=(reader, ours, folder), daemon=True)
         listener.start()
         undo.callback(listener.join)
         undo.callback(writer.close)
@@ -167,7 +169,8 @@ def _require_writable(path: Path | str, target: Path) -> None:
     except FileNotFoundError:
         return
     if not stat.S_ISREG(mode):
-        raise WriteError(f"{path}: cannot be written, as it is {'a folder' if stat.S_ISDIR(mode) else 'no file'}; name a file")
+        kind = "a folder" if stat.S_ISDIR(mode) else "no file"
+        raise WriteError(f"{path}: cannot be written, as it is {kind}; name a file")
     if not os.access(target, os.W_OK):
         raise WriteError(f"{path}: cannot be written, as it is write-protected; name another file")
 
@@ -205,17 +208,20 @@ def _leave_to_listener(*_: object) -> None:
     """Handle a signal later than the listener does."""
 
 
-def _listen(reader: socket.socket, ours: tuple[int, ...]) -> None:
+def _listen(reader: socket.socket, ours: tuple[int, ...], folder: Path | str | None) -> None:
     while numbers := reader.recv(1):
         if numbers[0] in ours:
-            _end(numbers[0])
+            _end(numbers[0], folder)
 
 
-def _end(number: int) -> None:
+def _end(number: int, folder: Path | str | None) -> None:
     """End the process as the signal would, without what is unfinished."""
     _moving.acquire(timeout=PATIENCE)
     for draft in _drafts:
         draft.discard()
+    if folder is not None:
+        with suppress(OSError):
+            os.rmdir(folder)
     if number == signal.SIGINT:
         os.write(2, b"\nnested-dielectric: interrupted\n" if os.isatty(2) else b"nested-dielectric: interrupted\n")
     if os.name == "posix":

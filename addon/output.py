@@ -37,9 +37,11 @@ def check_picture(file: Path, path: Path | str, size: tuple[int, int] | None = N
             spec = picture.spec()
             pixels = picture.read_image(layer, 0, 0, spec.nchannels, oiio.UNKNOWN)
             if pixels is None or picture.has_error:
-                raise WriteError(f"{path}: was not written whole ({reason(picture.geterror(), file, path)}); is the disk full?")
-            if size is not None and (spec.width, spec.height) != size:
-                raise WriteError(f"{path}: was written with {spec.width} x {spec.height} pixels instead of {size[0]} x {size[1]}")
+                text = reason(picture.geterror(), file, path)
+                raise WriteError(f"{path}: was not written whole ({text}); is the disk full?")
+            found = spec.width, spec.height
+            if size is not None and found != size:
+                raise WriteError(f"{path}: was written with {found} pixels instead of {size}")
             if spec.nchannels < channels:
                 raise WriteError(f"{path}: was written with {spec.nchannels} channels instead of {channels}")
             layer += 1
@@ -64,7 +66,8 @@ def save_blend(path: Path | str) -> Path:
             with bpy.data.libraries.load(str(draft)) as (held, _):
                 whole = set(held.scenes) == {scene.name for scene in bpy.data.scenes if scene.library is None}
         except (OSError, RuntimeError) as error:
-            raise WriteError(f"{path}: was not written whole ({reason(error, draft, path)}); is the disk full?") from error
+            text = reason(error, draft, path)
+            raise WriteError(f"{path}: was not written whole ({text}); is the disk full?") from error
         if not whole:
             raise WriteError(f"{path}: was not written whole; is the disk full?")
         try:

@@ -118,7 +118,7 @@ def compositors(scene: bpy.types.Scene) -> list[bpy.types.CompositorNodeTree]:
 
 
 def file_outputs(scene: bpy.types.Scene) -> list[bpy.types.CompositorNodeOutputFile]:
-    """Return the nodes, of groups in groups too, that write files when a scene is rendered, but for those of libraries."""
+    """Return the nodes that write files when a scene is rendered, of groups in groups too, but for those of libraries."""
     strips = scene.sequence_editor is not None and len(scene.sequence_editor.strips) > 0
     if not scene.render.use_compositing or (scene.render.use_sequencer and strips):
         return []

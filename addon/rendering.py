@@ -46,19 +46,19 @@ def render_frame(
 ) -> Path:
     """Render one frame of a scene to a file and return its absolute path.
 
-    The scene's own settings and frame are afterwards as they were. So is a file that was there, unless all of the picture
-    could be read back from the new one; the same holds for what the compositor's File Output nodes write.
+    The scene's own settings and frame are afterwards as they were. A file that was there stays until the new one could be
+    read back whole; the same holds for what the compositor's File Output nodes write.
 
-    Ctrl-C or a signal to end while it renders ends the process at once, unless the caller handles signals or there is an
-    interactive prompt: Blender itself cannot be stopped within seconds.
+    Ctrl-C and other signals to end, unless the caller handles them or sits at a prompt, end the process at once: Blender
+    cannot be made to stop rendering within seconds.
 
     :param output: the file; its ending chooses the format. Braces, ``#`` and ``//`` stand for themselves.
     :param samples: samples per pixel; the scene's own unless given.
     :param frame: the frame; the current one unless given.
     :param progress: called with the samples done and to do.
-    :raises RenderError: for an ending that no format has, a scene without a camera, a frame or samples out of range, or a
-        render that fails.
-    :raises WriteError: for a file that cannot be written, before anything is rendered, or that was not written whole.
+    :raises RenderError: for an ending that no format has, a scene without a camera, numbers out of range, or a render
+        that fails.
+    :raises WriteError: for a file that cannot be written, before anything is rendered, or was not written whole.
     """
     file_format = FILE_FORMATS.get(Path(output).suffix.lower())
     if file_format is None:
@@ -71,9 +71,9 @@ def render_frame(
         limits = owner.bl_rna.properties[name]
         if value is not None and not limits.hard_min <= value <= limits.hard_max:
             raise RenderError(f"{limits.name} {value}: must be {limits.hard_min} to {limits.hard_max}")
-    with ending_at_once(), ExitStack() as undo:
+    with ending_at_once(bpy.app.tempdir), ExitStack() as undo:
         enter = undo.enter_context
-        passes = enter(_file_outputs_held_back(scene))
+        enter(_file_outputs_held_back(scene))
         draft = enter(replacing(output))
         if frame is not None:
             undo.callback(scene.frame_set, scene.frame_current, subframe=scene.frame_subframe)
@@ -115,13 +115,13 @@ def _set_path(owner: Any, name: str, path: Path) -> Iterator[None]:
     text = str(path).replace("{", "{{").replace("}", "}}")
     with _set(owner, **{name: text}):
         if getattr(owner, name) != text or (os.sep == "/" and "\\" in text):
-            raise WriteError(f"{path.parent}: Blender cannot write there: too long, or a backslash; name another folder")
+            raise WriteError(f"{path.parent}: too long for Blender, or with a backslash; name another folder")
         yield
 
 
 @contextmanager
 def _image_format(scene: bpy.types.Scene, file_format: str) -> Iterator[None]:
-    """Let a scene write a format meanwhile. One setting bounds another's values, so they are set and restored in order."""
+    """Let a scene write a format meanwhile. Each setting bounds the next one's values, so their order matters."""
     settings = scene.render.image_settings
     before = {name: getattr(settings, name) for name in ("media_type", "file_format", "color_mode", "color_depth")}
     try:
