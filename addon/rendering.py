@@ -46,8 +46,8 @@ def render_frame(
 ) -> Path:
     """Render one frame of a scene to a file and return its absolute path.
 
-    The scene's own settings and frame are afterwards as they were. A file that was there stays until the new one could be
-    read back whole; the same holds for what the compositor's File Output nodes write.
+    The scene's own settings and frame are afterwards as they were. A file that was there stays until the new one could
+    be read back whole; the same holds for what the compositor's File Output nodes write.
 
     Ctrl-C and other signals to end, unless the caller handles them or sits at a prompt, end the process at once: Blender
     cannot be made to stop rendering within seconds.
