@@ -65,6 +65,9 @@ def render_frame(
         raise RenderError(f"{Path(output).name}: the ending must be one of {', '.join(FILE_FORMATS)}")
     if scene.camera is None:
         raise RenderError(f"scene {scene.name!r} has no camera; add one and make it active")
+    if not any(layer.use for layer in scene.view_layers):
+        # Blender would write black, or crash on writing OpenEXR.
+        raise RenderError(f"scene {scene.name!r} has no view layer that is used for rendering; switch one on")
     if scene.render.use_multiview and scene.render.image_settings.views_format == "INDIVIDUAL":
         raise RenderError(f"scene {scene.name!r} has a picture for each view; choose Stereo 3D as Views Format")
     for owner, name, value in ((scene, "frame_current", frame), (scene.cycles, "samples", samples)):
@@ -89,7 +92,9 @@ def render_frame(
             with bpy.context.temp_override(scene=scene):
                 done = bpy.ops.render.render(write_still=True)
         except RuntimeError as error:
-            raise RenderError(f"{output}: was not written ({reason(error, draft, output)})") from None
+            text = reason(error, draft, output)
+            remedy = "; is the disk full?" if "cannot save" in text else ""
+            raise RenderError(f"{output}: was not written ({text}){remedy}") from None
         if done != {"FINISHED"}:
             raise RenderError(f"scene {scene.name!r}: the render was cancelled")
         check_picture(draft, output, _size(scene.render), _CHANNELS[scene.render.image_settings.color_mode])

@@ -289,13 +289,14 @@ def test_a_picture_for_which_the_disk_is_too_full_leaves_the_old_one(ending, tmp
     [
         (lambda scene: setattr(scene.render, "use_multiview", True), "Stereo 3D"),
         (lambda scene: setattr(scene, "camera", None), "no camera"),
+        (lambda scene: setattr(scene.view_layers[0], "use", False), "no view layer"),
     ],
 )
 def test_what_cannot_be_rendered_is_named_and_writes_nothing(change, words, tmp_path):
     scene = stripes()
     change(scene)
     with pytest.raises(RenderError, match=words):
-        render_frame(scene, tmp_path / "x.png")
+        render_frame(scene, tmp_path / "x.exr")
     assert not names(tmp_path)
 
 
