@@ -63,17 +63,9 @@ def render_frame(
     file_format = FILE_FORMATS.get(Path(output).suffix.lower())
     if file_format is None:
         raise RenderError(f"{Path(output).name}: the ending must be one of {', '.join(FILE_FORMATS)}")
-    if scene.camera is None:
-        raise RenderError(f"scene {scene.name!r} has no camera; add one and make it active")
-    if not any(layer.use for layer in scene.view_layers):
-        # Blender would write black, or crash on writing OpenEXR.
-        raise RenderError(f"scene {scene.name!r} has no view layer that is used for rendering; switch one on")
-    if scene.render.use_multiview and scene.render.image_settings.views_format == "INDIVIDUAL":
-        raise RenderError(f"scene {scene.name!r} has a picture for each view; choose Stereo 3D as Views Format")
-    for owner, name, value in ((scene, "frame_current", frame), (scene.cycles, "samples", samples)):
-        limits = owner.bl_rna.properties[name]
-        if value is not None and not limits.hard_min <= value <= limits.hard_max:
-            raise RenderError(f"{limits.name} {value}: must be {limits.hard_min} to {limits.hard_max}")
+    _require_renderable(scene)
+    _require_within(scene, "frame_current", frame)
+    _require_within(scene.cycles, "samples", samples)
     with ending_at_once(bpy.app.tempdir), ExitStack() as undo:
         enter = undo.enter_context
         enter(_file_outputs_held_back(scene))
@@ -99,6 +91,23 @@ def render_frame(
             raise RenderError(f"scene {scene.name!r}: the render was cancelled")
         check_picture(draft, output, _size(scene.render), _CHANNELS[scene.render.image_settings.color_mode])
     return absolute(output)
+
+
+def _require_renderable(scene: bpy.types.Scene) -> None:
+    if scene.camera is None:
+        raise RenderError(f"scene {scene.name!r} has no camera; add one and make it active")
+    if not any(layer.use for layer in scene.view_layers):
+        # Blender would write black, or crash on writing OpenEXR.
+        raise RenderError(f"scene {scene.name!r} has no view layer that is used for rendering; switch one on")
+    if scene.render.use_multiview and scene.render.image_settings.views_format == "INDIVIDUAL":
+        raise RenderError(f"scene {scene.name!r} has a picture for each view; choose Stereo 3D as Views Format")
+
+
+def _require_within(owner: Any, name: str, value: int | None) -> None:
+    """Refuse a number that Blender would replace by its nearest."""
+    limits = owner.bl_rna.properties[name]
+    if value is not None and not limits.hard_min <= value <= limits.hard_max:
+        raise RenderError(f"{limits.name} {value}: must be {limits.hard_min} to {limits.hard_max}")
 
 
 @contextmanager
