@@ -26,7 +26,7 @@ from .output import check_picture, reason, save_blend
 from .parameters import ParameterError
 from .preparation import prepare
 from .presets import load_preset, preset_names
-from .rendering import ProgressLine, render_frame
+from .rendering import ProgressLine, file_format_of, render_frame
 from .spectra import DISTRIBUTIONS, GAMUTS, WAVELENGTHS, SpectrumError, plot, spectral_table
 from .versions import update_materials
 from .working_space import working_gamut
@@ -178,7 +178,7 @@ def _open(file: Path | None) -> bpy.types.Scene:
         raise _Failure(f"{file}: no such file")
     else:
         try:
-            bpy.ops.wm.open_mainfile(filepath=str(file.resolve()))
+            bpy.ops.wm.open_mainfile(filepath=str(absolute(file)))
         except RuntimeError as error:
             raise _Failure(f"{file}: {error}") from None
     return bpy.context.scene
@@ -186,6 +186,7 @@ def _open(file: Path | None) -> bpy.types.Scene:
 
 def _demo(options: argparse.Namespace) -> None:
     require_blender()
+    file_format_of(options.output)  # before any work is done
     scene = build_scene()
     print(prepare(scene), flush=True)
     if options.save:
@@ -194,6 +195,7 @@ def _demo(options: argparse.Namespace) -> None:
 
 
 def _render(options: argparse.Namespace) -> None:
+    file_format_of(options.output)
     scene = _open(options.file)
     print(prepare(scene), flush=True)
     print(render_frame(scene, options.output, options.samples, options.frame, ProgressLine()))

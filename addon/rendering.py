@@ -37,6 +37,14 @@ class RenderError(RuntimeError):
     """A render that cannot be started, or that left no picture."""
 
 
+def file_format_of(output: Path | str) -> str:
+    """Return what Blender calls the format that a path's ending names; raises :class:`RenderError` if it names none."""
+    file_format = FILE_FORMATS.get(Path(output).suffix.lower())
+    if file_format is None:
+        raise RenderError(f"{Path(output).name}: the ending must be one of {', '.join(FILE_FORMATS)}")
+    return file_format
+
+
 def render_frame(
     scene: bpy.types.Scene,
     output: Path | str,
@@ -60,9 +68,7 @@ def render_frame(
         that fails.
     :raises WriteError: for a file that cannot be written, before anything is rendered, or was not written whole.
     """
-    file_format = FILE_FORMATS.get(Path(output).suffix.lower())
-    if file_format is None:
-        raise RenderError(f"{Path(output).name}: the ending must be one of {', '.join(FILE_FORMATS)}")
+    file_format = file_format_of(output)
     _require_renderable(scene)
     _require_within(scene, "frame_current", frame)
     _require_within(scene.cycles, "samples", samples)
