@@ -10,6 +10,14 @@
     print(nd.prepare(bpy.context.scene))
 """
 
+import sys
+
+from .files import ending_at_once
+
+if "bpy" not in sys.modules:
+    with ending_at_once():  # which Blender's start would swallow
+        import bpy  # noqa: F401
+
 from .analysis import clear_analysis
 from .caustics import set_shadow_caustics
 from .compatibility import UnsupportedError

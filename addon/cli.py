@@ -2,27 +2,31 @@
 
 Blender takes only identifiers for commands, hence the underscore there.
 
-Exit codes: 0 done, 1 failed, 2 wrong usage.
+Exit codes: 0 done, 1 failed, 2 wrong usage; Ctrl-C ends it as it ends other programs, which shells report as 130.
 """
 
 from __future__ import annotations
 
 import argparse
 import io
+import os
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import bpy
 import numpy as np
 
 from .compatibility import require_blender
+from .files import absolute, ending_at_once, replacing
 from .iced_water import build_scene
 from .jf import JfError, read_nodes, report, translate
 from .materials import dielectric_node, new_material
+from .output import check_picture, reason, save_blend
 from .parameters import ParameterError
 from .preparation import prepare
 from .presets import load_preset, preset_names
-from .rendering import ProgressLine, render_frame
+from .rendering import ProgressLine, file_format_of, render_frame
 from .spectra import DISTRIBUTIONS, GAMUTS, WAVELENGTHS, SpectrumError, plot, spectral_table
 from .versions import update_materials
 from .working_space import working_gamut
@@ -41,10 +45,20 @@ def main(arguments: list[str] | None = None) -> int:
         options = _parser().parse_args(arguments)
     except SystemExit as stop:
         return int(stop.code or 0)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # for file names that are no text
+    bpy.utils.expose_bundled_modules()  # Script nodes of a file that is opened keep their sockets with it alone
     try:
-        options.run(options)
+        with ending_at_once(bpy.app.tempdir):
+            options.run(options)
+            sys.stdout.flush()
+    except BrokenPipeError:  # whoever read it has enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
     except (_Failure, JfError, ParameterError, SpectrumError, OSError, RuntimeError) as error:
-        print(f"{PROGRAM}: error: {' '.join(str(error).split())}", file=sys.stderr)
+        named = isinstance(error, OSError) and error.filename
+        text = f"{error.filename}: {error.strerror}" if named else str(error).replace("Error: ", "")
+        print(f"{PROGRAM}: error: {' '.join(text.split())}", file=sys.stderr)
         return 1
     return 0
 
@@ -55,10 +69,10 @@ def _parser() -> argparse.ArgumentParser:
 
     demo = commands.add_parser("demo", help="model the glass of iced water and render it", allow_abbrev=False)
     demo.add_argument(
-        "-o", "--output", type=Path, default=DEMO_OUTPUT, help=f"picture to write (default: {DEMO_OUTPUT})"
+        "-o", "--output", type=_file, default=DEMO_OUTPUT, help=f"picture to write (default: {DEMO_OUTPUT})"
     )
     demo.add_argument("--samples", type=_positive, help="samples per pixel")
-    demo.add_argument("--save", type=Path, metavar="FILE.blend", help="also save the scene")
+    demo.add_argument("--save", type=_blend, metavar="FILE.blend", help="also save the scene")
     demo.set_defaults(run=_demo)
 
     render = commands.add_parser(
@@ -66,7 +80,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     _add_file(render)
     render.add_argument(
-        "-o", "--output", type=Path, required=True, help="picture to write; its ending chooses the format"
+        "-o", "--output", type=_file, required=True, help="picture to write; its ending chooses the format"
     )
     render.add_argument("--samples", type=_positive, help="samples per pixel (default: the scene's)")
     render.add_argument("--frame", type=int, help="frame to render (default: the current one)")
@@ -76,12 +90,14 @@ def _parser() -> argparse.ArgumentParser:
         "prepare", help="set what a .blend needs, list problems, and save it", allow_abbrev=False
     )
     _add_file(preparation)
+    _add_saved(preparation)
     preparation.set_defaults(run=_prepare)
 
     update = commands.add_parser(
         "update", help="bring a .blend's materials to this version of the extension, and save it", allow_abbrev=False
     )
     _add_file(update)
+    _add_saved(update)
     update.set_defaults(run=_update)
 
     presets = commands.add_parser("presets", help="list the presets", allow_abbrev=False)
@@ -106,9 +122,9 @@ def _parser() -> argparse.ArgumentParser:
         "--keep-negative", action="store_true", help="keep the negative parts of colours outside the gamut"
     )
     bake.add_argument(
-        "-o", "--output", type=Path, required=True, metavar="TABLE.exr", help="picture to write, a pixel an entry"
+        "-o", "--output", type=_file, required=True, metavar="TABLE.exr", help="picture to write, a pixel an entry"
     )
-    bake.add_argument("--plot", type=Path, metavar="PLOT.png", help="also draw it; needs matplotlib")
+    bake.add_argument("--plot", type=_file, metavar="PLOT.png", help="also draw it; needs matplotlib")
     bake.set_defaults(run=_bake)
 
     migration = commands.add_parser(
@@ -118,7 +134,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     migration.add_argument("file", type=Path, metavar="FILE", help="an Arnold scene (.ass), or parameters (.json)")
     migration.add_argument(
-        "-o", "--output", type=Path, metavar="FILE.blend", help="file to write (default: beside FILE, if it is new)"
+        "-o", "--output", type=_file, metavar="FILE.blend", help="file to write (default: beside FILE, if it is new)"
     )
     migration.set_defaults(run=_import_jf)
     return parser
@@ -128,6 +144,23 @@ def _add_file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "file", type=Path, nargs="?", metavar="FILE", help="the .blend (default: the one Blender has open)"
     )
+
+
+def _add_saved(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("-o", "--output", type=_blend, metavar="OUT.blend", help="file to write (default: FILE itself)")
+
+
+def _file(text: str) -> Path:
+    if not text or text.endswith(("/", os.sep)):
+        raise argparse.ArgumentTypeError(f"{text!r} is no file's name")
+    return Path(text)
+
+
+def _blend(text: str) -> Path:
+    path = _file(text)
+    if path.suffix.lower() != ".blend":
+        raise argparse.ArgumentTypeError(f"{text}: the ending must be .blend")
+    return path
 
 
 def _positive(text: str) -> int:
@@ -145,7 +178,7 @@ def _open(file: Path | None) -> bpy.types.Scene:
         raise _Failure(f"{file}: no such file")
     else:
         try:
-            bpy.ops.wm.open_mainfile(filepath=str(file.resolve()))
+            bpy.ops.wm.open_mainfile(filepath=str(absolute(file)))
         except RuntimeError as error:
             raise _Failure(f"{file}: {error}") from None
     return bpy.context.scene
@@ -153,31 +186,33 @@ def _open(file: Path | None) -> bpy.types.Scene:
 
 def _demo(options: argparse.Namespace) -> None:
     require_blender()
+    file_format_of(options.output)  # before any work is done
     scene = build_scene()
-    print(prepare(scene))
+    print(prepare(scene), flush=True)
     if options.save:
-        bpy.ops.wm.save_as_mainfile(filepath=str(options.save.resolve()), copy=True)
+        save_blend(options.save)
     print(render_frame(scene, options.output, options.samples, progress=ProgressLine()))
 
 
 def _render(options: argparse.Namespace) -> None:
+    file_format_of(options.output)
     scene = _open(options.file)
-    print(prepare(scene))
+    print(prepare(scene), flush=True)
     print(render_frame(scene, options.output, options.samples, options.frame, ProgressLine()))
 
 
 def _prepare(options: argparse.Namespace) -> None:
     scene = _open(options.file)
     print(prepare(scene))
-    bpy.ops.wm.save_mainfile()
+    print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
 
 
 def _update(options: argparse.Namespace) -> None:
     _open(options.file)
     changes = update_materials()
     print("\n".join(changes) or "nothing to change")
-    if changes:
-        bpy.ops.wm.save_mainfile()
+    if changes or options.output:
+        print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
 
 
 def _presets(options: argparse.Namespace) -> None:
@@ -202,12 +237,13 @@ def _bake(options: argparse.Namespace) -> None:
         "rgb": "weights of scene-linear red, green and blue; their mean is white",
         "alpha": "wavelength in nm",
     }
-    _write_table(options.output, table, metadata)
-    written = f"{len(table)} entries in {gamut} to {options.output.resolve()}"
+    with ExitStack() as undo:
+        if drawing:
+            undo.enter_context(replacing(options.plot)).write_bytes(drawing)
+        _write_table(undo.enter_context(replacing(options.output)), options.output, table, metadata)
+    written = f"{len(table)} entries in {gamut} to {absolute(options.output)}"
     if drawing:
-        options.plot.parent.mkdir(parents=True, exist_ok=True)
-        options.plot.write_bytes(drawing)
-        written += f", and {options.plot.resolve()}"
+        written += f", and {absolute(options.plot)}"
     print(f"wrote {written}")
 
 
@@ -229,9 +265,8 @@ def _import_jf(options: argparse.Namespace) -> None:
         material.use_fake_user = True  # or the file would lose it
         for socket, colour in translation.emission.items():
             _add_emission(material, socket, colour)
-    output.parent.mkdir(parents=True, exist_ok=True)
-    bpy.ops.wm.save_as_mainfile(filepath=str(output.resolve()), copy=True)
-    print(f"wrote {len(translations)} material{'s' * (len(translations) != 1)} to {output.resolve()}")
+    saved = save_blend(output)
+    print(f"wrote {len(translations)} material{'s' * (len(translations) != 1)} to {saved}")
 
 
 def _add_emission(material: bpy.types.Material, socket: str, colour: tuple[float, float, float]) -> None:
@@ -255,18 +290,15 @@ def _draw(path: Path, distribution: str, table: np.ndarray) -> bytes:
     return drawing.getvalue()
 
 
-def _write_table(path: Path, table: np.ndarray, metadata: dict[str, str | float | int]) -> None:
-    bpy.utils.expose_bundled_modules()
+def _write_table(draft: Path, path: Path, table: np.ndarray, metadata: dict[str, str | float | int]) -> None:
     import OpenImageIO as oiio  # Blender's own copy
 
-    path.parent.mkdir(parents=True, exist_ok=True)
     picture = oiio.ImageSpec(len(table), 1, 4, oiio.FLOAT)
     picture.channelnames = ("R", "G", "B", "A")
     for name, value in metadata.items():
         picture.attribute(name, value)
-    file = oiio.ImageOutput.create(str(path))
-    if file is None:
-        raise _Failure(f"{path}: cannot be written ({oiio.geterror()})")
-    done = file.open(str(path), picture) and file.write_image(table[None])
+    file = oiio.ImageOutput.create("exr")
+    done = file.open(os.fsencode(draft), picture) and file.write_image(table[None])
     if not (file.close() and done):
-        raise _Failure(f"{path}: cannot be written ({file.geterror()})")
+        raise _Failure(f"{path}: was not written whole ({reason(file.geterror(), draft, path)})")
+    check_picture(draft, path, (len(table), 1), 4)

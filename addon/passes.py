@@ -117,6 +117,25 @@ def compositors(scene: bpy.types.Scene) -> list[bpy.types.CompositorNodeTree]:
     return [] if scene.compositing_node_group is None else [scene.compositing_node_group]
 
 
+def file_outputs(scene: bpy.types.Scene) -> list[bpy.types.CompositorNodeOutputFile]:
+    """Return the nodes that write files when a scene is rendered, of groups in groups too, but for those of libraries."""
+    strips = scene.sequence_editor is not None and len(scene.sequence_editor.strips) > 0
+    if not scene.render.use_compositing or (scene.render.use_sequencer and strips):
+        return []
+    found: list[bpy.types.CompositorNodeOutputFile] = []
+    trees = compositors(scene)
+    for tree in trees:  # which grows meanwhile
+        for node in tree.nodes:
+            if node.mute:
+                continue
+            if node.bl_idname == "CompositorNodeGroup" and node.node_tree is not None and node.node_tree not in trees:
+                trees.append(node.node_tree)
+            elif node.bl_idname == "CompositorNodeOutputFile" and tree.library is None:
+                if any(socket.is_linked for socket in node.inputs):
+                    found.append(node)
+    return found
+
+
 def _has_compositor(scene: bpy.types.Scene) -> bool:
     if hasattr(scene, "compositor_effects"):
         return any(effect.node_group is not None for effect in scene.compositor_effects)
@@ -219,10 +238,10 @@ def _height(node: bpy.types.Node) -> float:
 
 def _path(scene: bpy.types.Scene, layer: str) -> tuple[str, str]:
     """Folder and name of a file beside the scene's output."""
-    folder, _, name = scene.render.filepath.replace("\\", "/").rpartition("/")
+    folder, slash, name = scene.render.filepath.replace("\\", "/").rpartition("/")
     stem = PurePath(name).stem.rstrip("#_. ")
     words = [word for word in (stem, FILE_NAME, bpy.path.clean_name(layer)) if word]
-    return f"{folder}/", "_".join(words)
+    return f"{folder}/" if slash else "./", "_".join(words)
 
 
 def _is_passes(tree: bpy.types.NodeTree | None) -> bool:

@@ -45,6 +45,9 @@ CELL = 0.1
 MAX_RMS = 100.0
 """Largest root mean square weight of a channel: beyond it the noise hides the picture."""
 
+MAX_CSV = 10_000_000
+"""Most characters of a file of power, of which a spectrum has some thousand lines: a device has no end."""
+
 DISTRIBUTIONS = (
     Choice("FULL", "Full", "Equal energy at all wavelengths (CIE E)"),
     Choice("DAYLIGHT", "Daylight", "Noon daylight (CIE D65)"),
@@ -307,11 +310,14 @@ def _separate_lines(wavelengths: np.ndarray, power: np.ndarray) -> tuple[np.ndar
 
 def _csv_spectrum(path: Path) -> Spectrum:
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        with path.open(encoding="utf-8-sig") as file:
+            text = file.read(MAX_CSV + 1)
     except FileNotFoundError:
         raise SpectrumError(f"distribution {str(path)!r}: no such word, CIE illuminant or file; {_REMEDY}") from None
     except (OSError, ValueError) as error:
         raise SpectrumError(f"{path}: cannot be read as a CSV file ({error}); {_REMEDY}") from None
+    if len(text) > MAX_CSV:
+        raise SpectrumError(f"{path}: is longer than {MAX_CSV:,} characters; {_REMEDY}")
     rows: list[tuple[float, float, int]] = []
     header_allowed = True
     for number, line in enumerate(text.splitlines(), 1):

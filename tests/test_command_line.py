@@ -67,6 +67,7 @@ def test_presets_are_listed():
     "arguments, words",
     [
         (("render", "missing.blend", "-o", "x.png"), ("missing.blend", "no such file")),
+        (("import-jf", "missing.json"), ("missing.json: No such file",)),
         (("prepare",), ("no file is open",)),
     ],
 )
@@ -135,6 +136,8 @@ def test_bake_takes_the_working_space_of_the_open_file_and_a_csv_file(tmp_path, 
         (("-o", "table.exr", "--plot", "plot.xyz"), ("plot.xyz", ".png")),
         (("-o", "table.exr", "--distribution", "DAYLITE"), ("DAYLITE", "DAYLIGHT")),
         (("-o", "table.exr", "--saturation", "nan"), ("saturation", "0 to 1")),
+        (("-o", "table.exr", "--distribution", "/dev/zero"), ("/dev/zero", "longer")),
+        (("-o", "table.exr", "--plot", "file/plot.png"), ("plot.png", "file is no folder")),
     ],
 )
 def test_bake_names_what_it_cannot_do_and_writes_nothing(arguments, words, tmp_path, monkeypatch, capsys):
@@ -163,6 +166,8 @@ def test_bake_without_matplotlib_says_so_before_anything_is_written(tmp_path, mo
         ("render", "a.blend", "-o", "b.png", "--samples", "0"),
         ("bake",),
         ("bake", "-o", "a.exr", "--gamut", "sRGB"),
+        ("render", "a.blend", "-o", "folder.png/"),
+        ("demo", "--save", "a.png"),
     ],
 )
 def test_wrong_usage_has_exit_code_2(arguments):
