@@ -9,8 +9,10 @@ from contextlib import ExitStack
 import bpy
 
 from . import analysis, operators, panels, versions
+from .checks import material_problems
 from .compatibility import blender_note, blender_problem, settings_problem
 from .media import media
+from .trees import mend_nodes
 
 REST = 0.3
 """Seconds without a change after which a scene in a window is analysed."""
@@ -44,8 +46,8 @@ def register() -> None:
         undo.callback(bpy.types.VIEW3D_MT_object.remove, operators.draw_preset_menu)
 
         for handlers, handler in (
-            (bpy.app.handlers.render_init, warn_before_render),
             (bpy.app.handlers.render_init, analyse_before_render),
+            (bpy.app.handlers.render_init, warn_before_render),
             (bpy.app.handlers.depsgraph_update_post, analyse_after_update),
             (bpy.app.handlers.load_post, mend_materials),
             (bpy.app.handlers.load_post, analyse_after_load),
@@ -82,6 +84,8 @@ def warn_before_render(scene: bpy.types.Scene, *_: object) -> None:
     problem = blender_problem() or settings_problem(scene)
     if problem and media(scene):
         print(f"Nested Dielectric: {problem}", file=sys.stderr)
+    for each in material_problems(scene):
+        print(f"Nested Dielectric: {each}", file=sys.stderr)
 
 
 @bpy.app.handlers.persistent
@@ -90,6 +94,7 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
     and updates have been followed.
     """
     if analysis.is_analysed(scene) and threading.current_thread() is threading.main_thread():
+        mend_all_nodes()
         analysis.analyse(scene)
 
 
@@ -98,11 +103,19 @@ def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph)
     """Follow what moves, changes, comes and goes. In a window nothing is to wait while the mouse drags it."""
     if not analysis.is_analysed(scene):
         return
+    if any(isinstance(update.id, (bpy.types.Material, bpy.types.ShaderNodeTree)) for update in depsgraph.updates):
+        mend_all_nodes()
     if not has_window():
         analysis.follow(scene, depsgraph)
     elif analysis.hold(scene, depsgraph):
         stop_timer()
         bpy.app.timers.register(analyse_at_rest, first_interval=REST)
+
+
+def mend_all_nodes() -> None:
+    """Let media read what artists have plugged in since."""
+    for material in bpy.data.materials:
+        mend_nodes(material)
 
 
 def analyse_at_rest() -> float | None:
