@@ -26,7 +26,6 @@ from .node_group import (
     AIR_AROUND,
     BY_OBJECT,
     CLEAR,
-    CYCLES_OUTPUT,
     FACE_ATTRIBUTE,
     FOREIGN_SOCKET,
     LEVEL_SOCKET,
@@ -41,6 +40,7 @@ from .node_group import (
     SURROUNDINGS_SOCKET,
     has_analysis,
 )
+from .trees import is_plugged
 
 ANALYSED = "nd_analysed"
 """Custom property of a scene whose media are kept analysed."""
@@ -462,7 +462,7 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     plain = True
     instancing_doubt = cache(_instancing_doubt)
     for instance in depsgraph.object_instances:
-        if instance.is_instance and instance.parent.original == instance.object.original:
+        if instance.object.type != instance.object.original.type:
             continue  # the mesh of a text, a curve or a metaball, which stands before it
         if instance.object.type in _SHAPED:
             row = _row(scene, facts, instance.object, np.array(instance.matrix_world))
@@ -669,7 +669,7 @@ def _facts(material: bpy.types.Material) -> _Facts:
         values,
         priority.default_value if still and not priority.is_linked else None,
         output is not None and output.inputs["Displacement"].is_linked and material.displacement_method != "BUMP",
-        has_analysis(node) and node.outputs[CYCLES_OUTPUT].is_linked,
+        has_analysis(node) and is_plugged(node),
     )
 
 

@@ -16,7 +16,7 @@ from .materials import dielectric_node, dielectrics, medium_material
 from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media
 from .node_group import MATERIAL_SLOTS
 from .parameters import NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
-from .trees import node_problems, socket_value
+from .trees import node_problems, shows_others_blindly, socket_value
 
 
 @dataclass(frozen=True)
@@ -55,6 +55,7 @@ def find_problems(scene: bpy.types.Scene) -> list[Problem]:
     for shape in shapes:
         problems += _mesh_problems(shape, shapes) + _mixture_problems(shape)
     problems += _overlap_problems(shapes)
+    problems += _mask_problems(shapes)
     if dispersing_materials(scene):
         problems += _dispersion_problems(scene)
     if objects:
@@ -281,6 +282,31 @@ def _lamp_problems(scene: bpy.types.Scene) -> list[Problem]:
                 "prepare it again",
             )
         )
+    return problems
+
+
+def _mask_problems(shapes: list[_Shape]) -> list[Problem]:
+    """Other shaders that show where the surface that they are mixed into does not exist."""
+    used = {material for shape in shapes for material in shape.materials}
+    blind = {material for material in used if shows_others_blindly(material)}
+    if not blind:
+        return []
+    shapes = [shape for shape in shapes if len(shape.vertices)]
+    low = np.array([shape.vertices.min(axis=0) for shape in shapes])
+    high = np.array([shape.vertices.max(axis=0) for shape in shapes])
+    priorities = np.array([get_priority(shape.obj) for shape in shapes])
+    problems = []
+    for index, shape in enumerate(shapes):
+        mixed = [material for material in shape.materials if material in blind]
+        meets = np.all((low < high[index]) & (high > low[index]), axis=1) & (priorities <= priorities[index])
+        if mixed and np.count_nonzero(meets) > 1:  # more than itself
+            problems.append(
+                Problem(
+                    shape.obj.name,
+                    f"mixes other shaders into material {mixed[0].name!r}, which show inside media that win over it, too",
+                    "multiply the factor of the Mix Shader by Surface Exists of the nested dielectric",
+                )
+            )
     return problems
 
 

@@ -19,11 +19,18 @@ Place = tuple[bpy.types.Node, ...]
 """A nested dielectric's node behind the nodes of the groups that it stands in, the outermost first."""
 
 PREPARE = "press Prepare Scene"
+MASKS = ("Surface Exists", "Is Entrance", "Is Exit")
+"""Outputs that tell where a surface exists."""
 
 
 def is_dielectric(node: bpy.types.Node | None) -> bool:
     """Whether a node shows a group of the extension's, of whichever version."""
     return node is not None and node.type == "GROUP" and group_version(node.node_tree) is not None
+
+
+def is_plugged(node: bpy.types.Node) -> bool:
+    """Whether the surface of a nested dielectric's node goes anywhere: if not, it stands in for one in a group."""
+    return any(output.is_linked for output in node.outputs if output.name == CYCLES_OUTPUT)
 
 
 def shows_dielectric(material: bpy.types.Material) -> bool:
@@ -38,12 +45,21 @@ def dielectric_places(material: bpy.types.Material) -> list[Place]:
     return [place for place, name in _shown(material, "CYCLES", "Surface") if name == CYCLES_OUTPUT]
 
 
+def shows_others_blindly(material: bpy.types.Material) -> bool:
+    """Whether other shaders are mixed with a nested dielectric by nodes that do not ask it where its surface exists."""
+    sources = list(_sources(material, "CYCLES", "Surface"))
+    dielectrics = [place[-1] for place, name in sources if name == CYCLES_OUTPUT and is_dielectric(place[-1])]
+    asked = any(output.is_linked for node in dielectrics for output in node.outputs if output.name in MASKS)
+    others = any(not is_dielectric(place[-1]) and place[-1].type != "BSDF_TRANSPARENT" for place, _ in sources)
+    return bool(dielectrics) and others and not asked
+
+
 def value_socket(place: Place, name: str) -> bpy.types.NodeSocket | None:
     """Return the socket that holds the value of a nested dielectric's parameter: its own, or one of a group around it; None
     where other nodes make the value.
     """
     *groups, node = place
-    first = socket = node.inputs[name]
+    first = socket = node.inputs.get(name)
     while links := _links(socket):
         node = links[0].from_node
         if node.type == "REROUTE" and _links(node.inputs[0]):
@@ -52,7 +68,7 @@ def value_socket(place: Place, name: str) -> bpy.types.NodeSocket | None:
             socket = _twin(groups.pop().inputs, links[0].from_socket)
         else:
             return None
-    return socket if socket is not None and socket.type == first.type else None
+    return socket if hasattr(socket, "default_value") and socket.type == first.type else None
 
 
 def mend_nodes(material: bpy.types.Material) -> list[str]:
@@ -72,13 +88,13 @@ def mend_nodes(material: bpy.types.Material) -> list[str]:
             return []
         before = node.name
         if readable is not None:
-            readable.name = f"{GROUP_NAME} Unused"
+            readable.name = f"{GROUP_NAME} Other"
         node.name = GROUP_NAME
         return [f"{material.name}: the node {before!r}, which is plugged in, is named {GROUP_NAME!r}"]
     changes = []
-    if readable is None or not is_dielectric(readable) or readable.outputs[CYCLES_OUTPUT].is_linked:
+    if not is_dielectric(readable) or is_plugged(readable):
         if readable is not None:
-            readable.name = f"{GROUP_NAME} Unused"
+            readable.name = f"{GROUP_NAME} Other"
         readable = nodes.new("ShaderNodeGroup")
         readable.name = GROUP_NAME
         readable.label = f"Read by neighbours: {place[0].name}"
@@ -104,7 +120,7 @@ def complete_nodes(material: bpy.types.Material) -> list[str]:
     tree = material.node_tree
     node = tree.nodes.get(GROUP_NAME)
     output = tree.get_output_node("CYCLES")
-    if not is_dielectric(node):
+    if not is_dielectric(node) or not {VOLUME_OUTPUT, PREVIEW_OUTPUT} <= set(node.outputs.keys()):
         return []
     changes = []
     if not output.inputs["Volume"].is_linked:
@@ -128,7 +144,7 @@ def node_problems(material: bpy.types.Material) -> Iterator[tuple[str, str]]:
     if tree is None or not _holds_dielectric(tree, set()):
         return
     where = f"material {material.name!r}"
-    prepare = PREPARE if material.is_editable else f"{PREPARE} in {material.library.filepath!r}"
+    prepare = PREPARE if material.library is None else f"{PREPARE} in {material.library.filepath!r}"
     places = dielectric_places(material)
     if not places:
         yield (
@@ -237,6 +253,11 @@ def _shows(material: bpy.types.Material, target: str, socket: str, output: str) 
 
 def _shown(material: bpy.types.Material, target: str, socket: str) -> Iterator[tuple[Place, str]]:
     """The nested dielectrics behind a socket of a material's output, with the names of their outputs."""
+    return ((place, name) for place, name in _sources(material, target, socket) if is_dielectric(place[-1]))
+
+
+def _sources(material: bpy.types.Material, target: str, socket: str) -> Iterator[tuple[Place, str]]:
+    """The nodes that make what a socket of a material's output gets, with the names of their outputs."""
     output = None if material.node_tree is None else material.node_tree.get_output_node(target)
     if output is not None:
         yield from _behind(output.inputs[socket], (), set())
@@ -267,9 +288,11 @@ def _from(
     elif node.type == "GROUP_INPUT":
         if groups:
             yield from _behind(_twin(groups[-1].inputs, output), groups[:-1], seen)
-    else:
-        for socket in _let_through(node):
+    elif inputs := _let_through(node):
+        for socket in inputs:
             yield from _behind(socket, groups, seen)
+    else:
+        yield (*groups, node), output.name
 
 
 def _let_through(node: bpy.types.Node) -> list[bpy.types.NodeSocket]:

@@ -264,6 +264,25 @@ def test_a_node_added_by_hand_is_named_until_prepare_completes_it():
 
 
 @pytest.mark.quick
+def test_a_group_that_gives_its_surface_alone_is_completed_beside_it():
+    new_scene()
+    material = nd.new_material("Wine", transmittance=(0.6, 0.1, 0.2))
+    add_sphere("Ball", 1.0, material)
+    tree = material.node_tree
+    tree.nodes.remove(tree.get_output_node("EEVEE"))
+    for link in tree.nodes[GROUP].outputs["Volume"].links:
+        tree.links.remove(link)
+    grouped(material)
+    tree.nodes["My Glass"].name = GROUP  # as artists may name it
+    assert nd.prepare(bpy.context.scene).problems == ()
+    assert nd.prepare(bpy.context.scene).changes == ()
+    node = tree.nodes[GROUP]
+    assert get_parameter(node, BY_KEYWORD["transmittance"]) == pytest.approx((0.6, 0.1, 0.2))
+    assert [output.name for output in node.outputs if output.is_linked] == ["Volume", "Preview"]
+    assert dielectric_node(material) == node
+
+
+@pytest.mark.quick
 def test_what_an_artist_has_plugged_in_stays_and_what_is_missing_is_named():
     new_scene()
     material = nd.new_material("Wine", transmittance=(0.6, 0.1, 0.2))

@@ -108,6 +108,20 @@ def test_texts_and_curves_that_are_alone_know_it(make):
 
 
 @pytest.mark.quick
+def test_a_text_in_instanced_collections_is_one_medium_in_each():
+    new_scene()
+    obj = text(nd.new_material("Glass", ior=1.5))
+    collection = bpy.data.collections.new("Letters")
+    bpy.context.scene.collection.objects.unlink(obj)
+    collection.objects.link(obj)
+    for x in (0, 5):
+        instance = add("Instance", None, (x, 0, 0))
+        instance.instance_type, instance.instance_collection = "COLLECTION", collection
+    result = nd.prepare(bpy.context.scene)
+    assert result.problems == () and result.found.known == ("Text",)
+
+
+@pytest.mark.quick
 def test_a_curve_that_another_object_shapes_asks_while_that_one_moves():
     new_scene()
     obj = curve(nd.new_material("Glass", ior=1.5))
