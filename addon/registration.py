@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import threading
+from collections.abc import Iterable
 from contextlib import ExitStack
 
 import bpy
@@ -94,7 +95,7 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
     and updates have been followed.
     """
     if analysis.is_analysed(scene) and threading.current_thread() is threading.main_thread():
-        mend_all_nodes()
+        mend_nodes_of(bpy.data.materials)
         analysis.analyse(scene)
 
 
@@ -103,8 +104,7 @@ def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph)
     """Follow what moves, changes, comes and goes. In a window nothing is to wait while the mouse drags it."""
     if not analysis.is_analysed(scene):
         return
-    if any(isinstance(update.id, (bpy.types.Material, bpy.types.ShaderNodeTree)) for update in depsgraph.updates):
-        mend_all_nodes()
+    mend_nodes_of({update.id.original for update in depsgraph.updates})
     if not has_window():
         analysis.follow(scene, depsgraph)
     elif analysis.hold(scene, depsgraph):
@@ -112,10 +112,13 @@ def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph)
         bpy.app.timers.register(analyse_at_rest, first_interval=REST)
 
 
-def mend_all_nodes() -> None:
-    """Let media read what artists have plugged in since."""
-    for material in bpy.data.materials:
-        mend_nodes(material)
+def mend_nodes_of(changed: Iterable[bpy.types.ID]) -> None:
+    """Let media read what artists have plugged in since, in materials and groups that have changed."""
+    if any(isinstance(data, bpy.types.ShaderNodeTree) and not data.is_embedded_data for data in changed):
+        changed = bpy.data.materials
+    for data in changed:
+        if isinstance(data, bpy.types.Material):
+            mend_nodes(data)
 
 
 def analyse_at_rest() -> float | None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import nested_dielectric as nd
+from nested_dielectric.analysis import last_found
 from nested_dielectric.checks import find_problems
 from scenes import add, add_box, add_camera, diffuse, mostly_again, new_scene, render, set_striped_world
 
@@ -119,6 +120,21 @@ def test_a_text_in_instanced_collections_is_one_medium_in_each():
         instance.instance_type, instance.instance_collection = "COLLECTION", collection
     result = nd.prepare(bpy.context.scene)
     assert result.problems == () and result.found.known == ("Text",)
+
+
+@pytest.mark.quick
+def test_a_text_that_is_typed_on_is_followed():
+    new_scene()
+    nd.register()
+    try:
+        obj = text(nd.new_material("Glass", ior=1.5, priority=2))
+        add_box("Far", (2, -1, -1), (4, 1, 1), nd.new_material("Water", ior=1.33, priority=1))
+        assert set(nd.prepare(bpy.context.scene).found.known) == {"Text", "Far"}
+        obj.data.body = "HIHIHI"
+        bpy.context.view_layer.update()
+        assert last_found(bpy.context.scene).asking == ("Text",)
+    finally:
+        nd.unregister()
 
 
 @pytest.mark.quick
