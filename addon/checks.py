@@ -12,7 +12,7 @@ from mathutils.bvhtree import BVHTree
 from . import meshes
 from .analysis import is_relative, triangles_of
 from .lights import carried_lamps, light_carriers, listed_lamps
-from .materials import dielectric_node, dielectrics, medium_material
+from .materials import dielectric_node, dielectrics, may_disperse, medium_material
 from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media
 from .node_group import MATERIAL_SLOTS
 from .parameters import NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
@@ -295,18 +295,18 @@ def _mask_problems(shapes: list[_Shape]) -> list[Problem]:
     low = np.array([shape.vertices.min(axis=0) for shape in shapes])
     high = np.array([shape.vertices.max(axis=0) for shape in shapes])
     priorities = np.array([get_priority(shape.obj) for shape in shapes])
+    remedy = "multiply the factor of the Mix Shader by Surface Exists of the nested dielectric"
     problems = []
     for index, shape in enumerate(shapes):
         mixed = [material for material in shape.materials if material in blind]
+        if not mixed:
+            continue
         meets = np.all((low < high[index]) & (high > low[index]), axis=1) & (priorities <= priorities[index])
-        if mixed and np.count_nonzero(meets) > 1:  # more than itself
-            problems.append(
-                Problem(
-                    shape.obj.name,
-                    f"mixes other shaders into material {mixed[0].name!r}, which show inside media that win over it, too",
-                    "multiply the factor of the Mix Shader by Surface Exists of the nested dielectric",
-                )
-            )
+        wrong = ["show inside media that win over it, too"] if np.count_nonzero(meets) > 1 else []  # more than itself
+        wrong += ["count twice where light is split"] if any(map(may_disperse, mixed)) else []
+        if wrong:
+            text = f"mixes other shaders into material {mixed[0].name!r}, which {' and '.join(wrong)}"
+            problems.append(Problem(shape.obj.name, text, remedy))
     return problems
 
 

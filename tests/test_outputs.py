@@ -141,6 +141,31 @@ def test_dirt_masked_by_a_surface_that_exists_shows_on_that_alone():
     assert_same_picture(batches(256, 16), reference, mean=4e-3)
 
 
+@pytest.mark.parametrize("mask", mostly_again(("Surface Exists", "Is Entrance")))
+def test_dirt_on_a_medium_that_disperses_counts_once(mask):
+    """Light that is split meets a surface twice. Half of a glow on the front of a box in the dark is half as bright as it."""
+    new_scene(4)
+    set_world((0, 0, 0))
+    material = nd.new_material("Prism", ior=1.5, abbe=20.0, disperse=True)
+    tree = material.node_tree
+    node, mix, glow = tree.nodes[GROUP], tree.nodes.new("ShaderNodeMixShader"), tree.nodes.new("ShaderNodeEmission")
+    half, side = tree.nodes.new("ShaderNodeMath"), tree.nodes.new("ShaderNodeNewGeometry")
+    half.operation, half.inputs[1].default_value = "MULTIPLY", 0.5
+    front = tree.nodes.new("ShaderNodeMath")
+    front.operation, front.use_clamp = "SUBTRACT", True
+    tree.links.new(node.outputs[mask], half.inputs[0])
+    tree.links.new(half.outputs[0], front.inputs[0])
+    tree.links.new(side.outputs["Backfacing"], front.inputs[1])
+    tree.links.new(front.outputs[0], mix.inputs[0])
+    tree.links.new(node.outputs["Surface"], mix.inputs[1])
+    tree.links.new(glow.outputs[0], mix.inputs[2])
+    plug(material, mix.outputs[0])
+    add_box("Box", (-1, -1, -1), (1, 1, 1), material)
+    add_camera((0.03, -5, 0.02), (0.03, 0, 0.02), width=0.1)
+    assert nd.prepare(bpy.context.scene).problems == ()
+    assert render(64) == pytest.approx(0.5, abs=1e-5)
+
+
 @pytest.mark.quick
 def test_dirt_that_does_not_ask_where_its_surface_exists_is_named_where_media_win_over_it():
     new_scene()
@@ -159,6 +184,9 @@ def test_dirt_that_does_not_ask_where_its_surface_exists_is_named_where_media_wi
     assert str(found).startswith("'Water' mixes other shaders") and "Surface Exists" in found.remedy
     nd.set_priority(obj, 0)
     assert nd.prepare(bpy.context.scene).problems == ()
+    tree.nodes[GROUP].inputs["Disperse"].default_value = True
+    (found,) = nd.prepare(bpy.context.scene).problems
+    assert "count twice where light is split" in found.text
     nd.set_priority(obj, None)
     tree.links.new(tree.nodes[GROUP].outputs["Surface Exists"], mix.inputs[0])
     assert nd.prepare(bpy.context.scene).problems == ()
