@@ -322,7 +322,7 @@ def test_media_whose_nodes_are_grouped_renamed_or_copied_render_as_plain_ones():
     """Each reads the other's index, on both sides of a common surface."""
     pictures = []
     for ways in ((), (twice_grouped, duplicated), (renamed, grouped)):
-        new_scene(32)
+        new_scene(24)
         set_striped_world()
         tint = {"transmittance": (0.5, 0.7, 0.9), "transmittance_depth": 0.5}
         media = nd.new_material("Glass", ior=1.5, priority=1, **tint), nd.new_material("Water", ior=1.33, priority=2)

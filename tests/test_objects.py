@@ -82,7 +82,7 @@ def test_what_is_no_mesh_renders_as_the_same_turned_into_one(make):
     """Rays meet the same triangles, whether what surrounds them is known or asked for."""
 
     def picture(is_mesh: bool) -> np.ndarray:
-        new_scene(24)
+        new_scene(16)
         set_striped_world()
         add_camera((0.1, -6, 0.3), (0.03, 0, 0), angle=26)
         tint = {"transmittance": (0.3, 0.7, 0.9), "transmittance_depth": 0.5}
