@@ -237,7 +237,7 @@ def test_a_muted_link_into_a_socket_is_none():
 
 
 def added_by_hand(name: str, **keywords) -> bpy.types.Material:
-    """Add > Group > Nested Dielectric in a new material, of which Surface alone is plugged into the output that is there."""
+    """Add > Group > Nested Dielectric in a new material, with Surface alone plugged into the output that is there."""
     group = nd.new_material("Other").node_tree.nodes[GROUP].node_tree
     material = bpy.data.materials.new(name)
     node = material.node_tree.nodes.new("ShaderNodeGroup")
@@ -359,7 +359,8 @@ def test_what_changes_in_nodes_of_a_prepared_scene_is_read_at_once():
         duplicated(water)
         water.node_tree.nodes[-1].inputs["Priority"].default_value = 3
         bpy.context.view_layer.update()
-        assert nd.get_priority(ball) == 3 and get_parameter(dielectric_node(water), BY_KEYWORD["ior"]) == pytest.approx(1.33)
+        assert nd.get_priority(ball) == 3
+        assert get_parameter(dielectric_node(water), BY_KEYWORD["ior"]) == pytest.approx(1.33)
         assert problems() == []
     finally:
         nd.unregister()

@@ -137,7 +137,7 @@ def test_dirt_masked_by_a_surface_that_exists_shows_on_that_alone():
 
 @pytest.mark.parametrize("mask", mostly_again(("Surface Exists", "Is Entrance")))
 def test_dirt_on_a_medium_that_disperses_counts_once(mask):
-    """Light that is split meets a surface twice. Half of a glow on the front of a box in the dark is half as bright as it."""
+    """Light that is split meets a surface twice. Half of a glow on a box in the dark is half as bright as the glow."""
     new_scene(4)
     set_world((0, 0, 0))
     material = nd.new_material("Prism", ior=1.5, abbe=20.0, disperse=True)
