@@ -21,7 +21,7 @@ from time import perf_counter
 import bpy
 import numpy as np
 
-from . import contacts
+from . import contacts, meshes
 from .contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
 from .materials import dielectric_node
 from .identity import NO_SCENE, known_number, scene_number
@@ -46,6 +46,7 @@ from .node_group import (
     SURROUNDINGS_SOCKET,
     has_analysis,
 )
+from .trees import is_plugged
 
 SETTLED_MODIFIERS = frozenset(
     (
@@ -530,6 +531,8 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     plain = True
     instancing_doubt = cache(_instancing_doubt)
     for instance in depsgraph.object_instances:
+        if instance.object.type != instance.object.original.type:
+            continue  # the mesh of a text, a curve or a metaball, which stands before it
         if instance.object.type in _SHAPED:
             row = _row(scene, facts, instance.object, np.array(instance.matrix_world))
             doubt = instance.is_instance and (instancing_doubt() or instancing_doubt(instance.parent.original))
@@ -581,6 +584,9 @@ def _is_known(survey: _Survey, data: bpy.types.ID) -> bool:
     return isinstance(data, (bpy.types.Mesh, bpy.types.ShaderNodeTree))
 
 
+_CONVERTED = {"CURVE", "SURFACE", "FONT", "META"}
+"""Types whose evaluated objects hold a mesh beside them."""
+
 _SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"}
 
 
@@ -591,7 +597,7 @@ def _row(
     matrix: np.ndarray,
 ) -> _Row:
     obj = evaluated.original
-    corners = np.array([tuple(corner) for corner in evaluated.bound_box]) @ matrix[:3, :3].T + matrix[:3, 3]
+    corners = _corners(evaluated) @ matrix[:3, :3].T + matrix[:3, 3]
     box = np.array([corners.min(axis=0), corners.max(axis=0)])
     dielectric = {
         slot.material.original for slot in evaluated.material_slots if slot.material and slot.material.original in facts
@@ -615,6 +621,22 @@ def _row(
         return _Row(obj, _grown(box, VAGUE), True)
     except _Doubt as doubt:
         return _Row(obj, EVERYWHERE, bool(dielectric), doubt=str(doubt))
+
+
+def _corners(evaluated: bpy.types.Object) -> np.ndarray:
+    """(n, 3) points between which an object lies, in its own space. The box of a text does not count its thickness."""
+    if evaluated.type in _CONVERTED:
+        vertices, _ = _mesh_of(evaluated)
+        return vertices if len(vertices) else np.zeros((1, 3))
+    return np.array([tuple(corner) for corner in evaluated.bound_box])
+
+
+def _mesh_of(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
+    """:func:`triangles_of` an evaluated object."""
+    try:
+        return triangles_of(evaluated.to_mesh())
+    finally:
+        evaluated.to_mesh_clear()
 
 
 def _grown(box: np.ndarray, margin: float) -> np.ndarray:
@@ -649,9 +671,10 @@ def _body(
     priority = facts.priority if own is None else own
     if priority is None:
         raise _Doubt("has a priority that may change")
-    if evaluated.type != "MESH":
-        return None
-    owner = obj if obj.modifiers or obj.data.shape_keys else obj.data
+    if evaluated.type != "MESH" and evaluated.type not in _CONVERTED or obj.type == "META":
+        return None  # the shape of metaballs is that of a whole family
+    is_shared = isinstance(obj.data, bpy.types.Mesh) and not obj.modifiers and not obj.data.shape_keys
+    owner = obj.data if is_shared else obj
     solid = _shapes.get(owner.session_uid)
     if solid is None:
         solid = _shapes[owner.session_uid] = _solid(evaluated)
@@ -663,10 +686,9 @@ def _body(
 
 def _solid(evaluated: bpy.types.Object) -> Solid:
     """An evaluated mesh, the same object as long as nothing changes it."""
-    try:
-        vertices, triangles = triangles_of(evaluated.to_mesh())
-    finally:
-        evaluated.to_mesh_clear()
+    vertices, triangles = _mesh_of(evaluated)
+    if not meshes.is_closed(triangles):
+        triangles = meshes.same_places(vertices)[triangles]
     content = hashlib.sha256(vertices)
     content.update(triangles)
     key = content.digest()
@@ -722,7 +744,7 @@ def _facts(material: bpy.types.Material) -> _Facts:
         values,
         priority.default_value if still and not priority.is_linked else None,
         output is not None and output.inputs["Displacement"].is_linked and material.displacement_method != "BUMP",
-        has_analysis(node),
+        has_analysis(node) and is_plugged(node),
     )
 
 
@@ -754,11 +776,33 @@ def _require_still(obj: bpy.types.Object) -> None:
         raise _Doubt("may move")
     if _is_animated(obj.data) or _is_animated(getattr(obj.data, "shape_keys", None)):
         raise _Doubt("may change its shape")
+    for other in _shapers(obj):
+        hidden = obj.type == "META" and other.hide_render != other.hide_viewport
+        if hidden or _moves(other) or _is_animated(other.data) or other.modifiers:
+            raise _Doubt(f"may change its shape with {other.name!r}")
     for modifier in obj.modifiers:
         if modifier.show_render and not modifier.show_viewport:
             raise _Doubt(f"has the modifier {modifier.name!r} in renders alone")
         if modifier.show_render and not _is_settled(modifier):
             raise _Doubt(f"has the modifier {modifier.name!r}, which may move it")
+
+
+def _shapers(obj: bpy.types.Object) -> list[bpy.types.Object]:
+    """Other objects that a curve, a text or a metaball takes its shape from."""
+    if obj.type == "META":
+        return [other for other in bpy.data.objects if other != obj and is_relative(other, obj)]
+    paths = ("bevel_object", "taper_object", "follow_curve")
+    return [other for path in paths if (other := getattr(obj.data, path, None)) is not None]
+
+
+def is_relative(obj: bpy.types.Object, other: bpy.types.Object) -> bool:
+    """Whether both are metaballs of one family, which merge into one object: their names differ in a number at most."""
+    return obj.type == other.type == "META" and _family(obj) == _family(other)
+
+
+def _family(obj: bpy.types.Object) -> str:
+    stem, _, number = obj.name.rpartition(".")
+    return stem if stem and number.isdigit() else obj.name
 
 
 def _moves(obj: bpy.types.Object) -> bool:
@@ -808,6 +852,7 @@ def _is_exact(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
         not scene.render.use_simplify
         and all(getattr(obj, f"visible_{ray}") for ray in _RAYS)
         and all(map(_is_same_in_renders, obj.modifiers))
+        and (obj.type not in _CONVERTED or _is_as_fine_in_renders(obj))
     )
 
 
@@ -822,10 +867,20 @@ def _is_same_in_renders(modifier: bpy.types.Modifier) -> bool:
     return modifier.type != "SCREW" or modifier.steps == modifier.render_steps
 
 
+def _is_as_fine_in_renders(obj: bpy.types.Object) -> bool:
+    """Whether a render divides a curve as the viewport does."""
+    data = obj.data
+    return not _shapers(obj) and all(
+        getattr(data, f"render_{resolution}", 0) in (0, getattr(data, resolution, 0))
+        for resolution in ("resolution_u", "resolution_v", "resolution")
+    )
+
+
 def _wants_faces(obj: bpy.types.Object) -> bool:
     """Whether the faces of the mesh are those of the render, and may be written."""
     return (
-        obj.mode == "OBJECT"
+        isinstance(obj.data, bpy.types.Mesh)
+        and obj.mode == "OBJECT"
         and obj.data.shape_keys is None
         and all(modifier.type == "NODES" for modifier in obj.modifiers)
     )

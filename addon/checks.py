@@ -10,12 +10,13 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 
 from . import meshes
-from .analysis import triangles_of
+from .analysis import is_relative, triangles_of
 from .lights import carried_lamps, light_carriers, listed_lamps
-from .materials import dielectric_node, dielectrics, medium_material
-from .media import dispersing_materials, get_priority, media
-from .node_group import MATERIAL_SLOTS, group_version
-from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
+from .materials import dielectric_node, dielectrics, may_disperse, medium_material
+from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media
+from .node_group import MATERIAL_SLOTS
+from .parameters import NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
+from .trees import node_problems, shows_others_blindly, socket_value
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,15 @@ class Problem:
 
 @dataclass(frozen=True)
 class _Shape:
-    """An evaluated mesh in world space."""
+    """An evaluated mesh in world space.
+
+    :param materials: nested dielectrics that its faces have.
+    """
 
     obj: bpy.types.Object
     vertices: np.ndarray
     triangles: np.ndarray
+    materials: tuple[bpy.types.Material, ...]
 
 
 def find_problems(scene: bpy.types.Scene) -> list[Problem]:
@@ -44,11 +49,13 @@ def find_problems(scene: bpy.types.Scene) -> list[Problem]:
     depsgraph = _depsgraph(scene)
     objects = media(scene)
     shapes = [shape for obj in objects if (shape := _shape(obj, depsgraph)) is not None]
-    problems = [problem for obj in scene.objects for problem in _node_problems(obj)]
+    problems = material_problems(scene)
+    problems += _kind_problems(depsgraph)
     problems += [problem for obj in objects for problem in _object_problems(obj)]
     for shape in shapes:
-        problems += _mesh_problems(shape)
+        problems += _mesh_problems(shape, shapes) + _mixture_problems(shape)
     problems += _overlap_problems(shapes)
+    problems += _mask_problems(shapes)
     if dispersing_materials(scene):
         problems += _dispersion_problems(scene)
     if objects:
@@ -63,18 +70,17 @@ def _depsgraph(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
     return layer.depsgraph
 
 
-def _node_problems(obj: bpy.types.Object) -> list[Problem]:
-    """A group node by another name renders, but its neighbours take the object for a foreign one."""
+def material_problems(scene: bpy.types.Scene) -> list[Problem]:
+    """Return what is wrong with the nodes of a scene's materials, each named by the first object that has it."""
+    users: dict[bpy.types.Material, bpy.types.Object] = {}
+    for obj in sorted(all_objects(scene), key=lambda obj: obj.name_full):
+        for slot in obj.material_slots:
+            if slot.material is not None:
+                users.setdefault(slot.material, obj)
     return [
-        Problem(
-            obj.name,
-            f"has a nested dielectric in material {slot.material.name!r} whose node is named {node.name!r}",
-            f"rename the node to {GROUP_NAME!r}",
-        )
-        for slot in obj.material_slots
-        if slot.material is not None and dielectric_node(slot.material) is None
-        for node in slot.material.node_tree.nodes
-        if node.type == "GROUP" and group_version(node.node_tree) is not None
+        Problem(obj.name, f"has {text}", remedy)
+        for material, obj in users.items()
+        for text, remedy in node_problems(material)
     ]
 
 
@@ -88,13 +94,45 @@ def _shape(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Shape | No
         return None
     try:
         vertices, triangles = triangles_of(mesh)
+        slots = np.zeros(len(mesh.polygons), dtype=np.int32)
+        mesh.polygons.foreach_get("material_index", slots)
     finally:
         evaluated.to_mesh_clear()
     matrix = np.array(evaluated.matrix_world, dtype=np.float64)
     world = vertices.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         triangles = triangles[:, ::-1]
-    return _Shape(obj, world, triangles)
+    materials = [slot.material.original if slot.material else None for slot in evaluated.material_slots]
+    used = (materials[min(slot, len(materials) - 1)] for slot in np.unique(slots)) if materials else ()
+    return _Shape(obj, world, triangles, tuple(each for each in dict.fromkeys(used) if dielectric_node(each)))
+
+
+def _kind_problems(depsgraph: bpy.types.Depsgraph) -> list[Problem]:
+    """What has a nested dielectric and no inside: objects, and what modifiers make of them."""
+    found = {}
+    for instance in depsgraph.object_instances:
+        obj = instance.object
+        if obj.type in NO_SOLIDS and any(dielectric_node(m.original) for m in obj.data.materials if m is not None):
+            owner = instance.parent if instance.is_instance else obj
+            found[owner.original] = obj.type
+    for obj in depsgraph.scene.objects:
+        if any(_is_hair(obj.original, system) for system in obj.particle_systems):
+            found[obj.original] = "CURVES"
+    problems = []
+    for obj, kind in found.items():
+        what, remedy = NO_SOLIDS[kind]
+        text = f"is {what}" if obj.type == kind else f"makes {what} of a nested dielectric"
+        remedy = f"{remedy}, or give it another material"
+        problems.append(Problem(obj.name, f"{text}, which Cycles knows no inside of", remedy))
+    return problems
+
+
+def _is_hair(obj: bpy.types.Object, system: bpy.types.ParticleSystem) -> bool:
+    """Whether particles are rendered as strands of a nested dielectric."""
+    slots, settings = obj.material_slots, system.settings
+    if settings.render_type != "PATH" or not slots:
+        return False
+    return dielectric_node(slots[min(settings.material, len(slots)) - 1].material) is not None
 
 
 def _object_problems(obj: bpy.types.Object) -> list[Problem]:
@@ -108,7 +146,7 @@ def _object_problems(obj: bpy.types.Object) -> list[Problem]:
                 "delete it, or set its priority again",
             )
         )
-    for slot, material in dielectrics(obj):
+    for slot, _ in dielectrics(obj):
         if slot >= MATERIAL_SLOTS:
             problems.append(
                 Problem(
@@ -117,23 +155,41 @@ def _object_problems(obj: bpy.types.Object) -> list[Problem]:
                     f"move it to one of the first {MATERIAL_SLOTS} slots",
                 )
             )
-        node = dielectric_node(material)
-        for name in NEIGHBOUR_PARAMETERS:
-            if node.inputs[name].is_linked:
-                problems.append(
-                    Problem(
-                        obj.name,
-                        f"has a link into {name!r} of material {material.name!r}, which its neighbours cannot follow",
-                        "unlink it; set, keyframe or drive the value itself",
-                    )
-                )
     return problems
 
 
-def _mesh_problems(shape: _Shape) -> list[Problem]:
-    name = shape.obj.name
+_EMPTY = {
+    "MESH": "give it a closed mesh, or another material",
+    "CURVE": "give it a Bevel Depth and Fill Caps (Curve properties > Geometry), or another material",
+    "FONT": "give it letters and an Extrude (Text properties > Geometry), or another material",
+    "SURFACE": "close it (Edit Mode > Surface > Cyclic), or give it another material",
+    "META": "let it reach its threshold (a larger Radius or Stiffness), or give it another material",
+}
+_CONVERT = "turn it into a mesh (Object > Convert > Mesh)"
+_OPEN = {
+    "MESH": "close it (Mesh > Clean Up > Fill Holes, Merge > By Distance, or a Solidify modifier) and recalculate its "
+    "normals",
+    "CURVE": "switch on Fill Caps (Curve properties > Geometry > Bevel) or make it Cyclic; turn around a bevel object that "
+    "faces the other way (Edit Mode > Segments > Switch Direction)",
+    "FONT": "give it an Extrude and the Fill Mode Both (Text properties)",
+    "SURFACE": f"close it (Edit Mode > Surface > Cyclic), or {_CONVERT} and merge its vertices by distance",
+    "META": f"{_CONVERT} and close that",
+}
+_INVERTED = {
+    "MESH": "recalculate them in Edit Mode (Mesh > Normals > Recalculate Outside)",
+    "SURFACE": f"turn it around (Edit Mode > Segments > Switch Direction), or {_CONVERT} and recalculate its normals",
+    "META": "make its elements positive",
+}
+"""Remedies by the object's type."""
+
+
+def _mesh_problems(shape: _Shape, shapes: list[_Shape]) -> list[Problem]:
+    obj, name = shape.obj, shape.obj.name
     if len(shape.triangles) == 0:
-        return [Problem(name, "has no faces", "give it a closed mesh, or another material")]
+        family = next((other.obj for other in shapes if is_relative(other.obj, obj) and len(other.triangles)), None)
+        if family is not None:
+            return _family_problems(obj, family)
+        return [Problem(name, "has no faces", _EMPTY[obj.type])] if obj.type in SOLID_TYPES else []
     if not np.isfinite(shape.vertices).all():
         return [
             Problem(
@@ -142,22 +198,44 @@ def _mesh_problems(shape: _Shape) -> list[Problem]:
         ]
     edges = meshes.open_edge_count(shape.triangles)
     if edges:
-        return [
-            Problem(
-                name,
-                f"is not closed or its faces are turned against each other ({edges} edges)",
-                "close it (Mesh > Clean Up > Fill Holes, or a Solidify modifier) and recalculate its normals",
-            )
-        ]
+        # A seam is no gap.
+        edges = meshes.open_edge_count(meshes.same_places(shape.vertices.astype(np.float32))[shape.triangles])
+    if edges:
+        text = f"is not closed or its faces are turned against each other ({edges} edges)"
+        return [Problem(name, text, _OPEN.get(obj.type, _CONVERT))]
     if meshes.signed_volume(shape.vertices, shape.triangles) < 0.0:
-        return [
-            Problem(
-                name,
-                "has its normals pointing inwards",
-                "recalculate them in Edit Mode (Mesh > Normals > Recalculate Outside)",
-            )
-        ]
+        remedy = _INVERTED.get(obj.type, f"{_CONVERT} and recalculate its normals")
+        return [Problem(name, "has its normals pointing inwards", remedy)]
     return []
+
+
+def _family_problems(obj: bpy.types.Object, family: bpy.types.Object) -> list[Problem]:
+    """Metaballs of one name are one object, which the first of them gives its material and its priority."""
+    if get_priority(obj) == get_priority(family) and _signature(obj) == _signature(family):
+        return []
+    return [
+        Problem(
+            obj.name,
+            f"merges into the metaball {family.name!r}, whose medium and priority are not its own",
+            "give it the same, or a name of its own that differs in more than a number",
+        )
+    ]
+
+
+def _mixture_problems(shape: _Shape) -> list[Problem]:
+    """An object is one medium: which it is inside cannot be told by faces."""
+    media_of = {_values(material): material.name for material in shape.materials}
+    if len(media_of) < 2:
+        return []
+    return [
+        Problem(
+            shape.obj.name,
+            f"has {len(media_of)} media in one object, {' and '.join(map(repr, media_of.values()))}",
+            "separate them (Edit Mode > Mesh > Separate > By Material) and close each"
+            if shape.obj.type == "MESH"
+            else f"{_CONVERT} and separate them (Edit Mode > Mesh > Separate > By Material)",
+        )
+    ]
 
 
 def _dispersion_problems(scene: bpy.types.Scene) -> list[Problem]:
@@ -207,12 +285,39 @@ def _lamp_problems(scene: bpy.types.Scene) -> list[Problem]:
     return problems
 
 
+def _mask_problems(shapes: list[_Shape]) -> list[Problem]:
+    """Other shaders that show where the surface that they are mixed into does not exist."""
+    used = {material for shape in shapes for material in shape.materials}
+    blind = {material for material in used if shows_others_blindly(material)}
+    if not blind:
+        return []
+    shapes = [shape for shape in shapes if len(shape.vertices)]
+    low = np.array([shape.vertices.min(axis=0) for shape in shapes])
+    high = np.array([shape.vertices.max(axis=0) for shape in shapes])
+    priorities = np.array([get_priority(shape.obj) for shape in shapes])
+    remedy = "multiply the factor of the Mix Shader by Surface Exists of the nested dielectric"
+    problems = []
+    for index, shape in enumerate(shapes):
+        mixed = [material for material in shape.materials if material in blind]
+        if not mixed:
+            continue
+        meets = np.all((low < high[index]) & (high > low[index]), axis=1) & (priorities <= priorities[index])
+        wrong = ["show inside media that win over it, too"] if np.count_nonzero(meets) > 1 else []  # more than itself
+        wrong += ["count twice where light is split"] if any(map(may_disperse, mixed)) else []
+        if wrong:
+            text = f"mixes other shaders into material {mixed[0].name!r}, which {' and '.join(wrong)}"
+            problems.append(Problem(shape.obj.name, text, remedy))
+    return problems
+
+
+def _values(material: bpy.types.Material) -> tuple:
+    """What neighbours read of a material."""
+    node = dielectric_node(material)
+    return tuple(socket_value(node.inputs[name]) for name in NEIGHBOUR_PARAMETERS)
+
+
 def _signature(obj: bpy.types.Object) -> tuple:
-    node = dielectric_node(medium_material(obj))
-    return tuple(
-        tuple(value) if hasattr(value, "__len__") else value
-        for value in (node.inputs[name].default_value for name in NEIGHBOUR_PARAMETERS[1:])
-    )
+    return _values(medium_material(obj))[1:]
 
 
 def _overlap_problems(shapes: list[_Shape]) -> list[Problem]:

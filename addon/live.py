@@ -6,13 +6,14 @@ The handlers are put in by :func:`analyse`, too, so that a script that never reg
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 import bpy
 
 from . import analysis
 from .identity import NO_SCENE, known_number
 from .lights import update_lights
+from .trees import mend_nodes
 
 REST = 0.3
 """Seconds without a change after which a scene in a window is analysed."""
@@ -101,6 +102,7 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
     if known_number(scene) != NO_SCENE:
         update_lights(scene)
     if analysis.is_analysed(scene):
+        mend_nodes_of(bpy.data.materials)
         _analyse(scene)
 
 
@@ -137,11 +139,21 @@ def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph)
     """Follow what moves, changes, comes and goes. In a window nothing is to wait while the mouse drags it."""
     if not analysis.is_analysed(scene):
         return
+    mend_nodes_of({update.id.original for update in depsgraph.updates})
     if not has_window():
         analysis.follow(scene, depsgraph)
     elif analysis.hold(scene, depsgraph):
         _wait_for_rest()
     _trust(scene)
+
+
+def mend_nodes_of(changed: Iterable[bpy.types.ID]) -> None:
+    """Let media read what artists have plugged in since, in materials and groups that have changed."""
+    if any(isinstance(data, bpy.types.ShaderNodeTree) and not data.is_embedded_data for data in changed):
+        changed = bpy.data.materials
+    for data in changed:
+        if isinstance(data, bpy.types.Material):
+            mend_nodes(data)
 
 
 def _wait_for_rest() -> None:

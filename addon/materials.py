@@ -23,7 +23,10 @@ from .parameters import (
 from .presets import load_preset
 from .spectra import SpectrumError, spectral_table
 from .spectral_images import read_rows
+from .trees import dielectric_places, shows_dielectric, value_socket
 from .working_space import working_gamut
+
+_NAMES = frozenset(parameter.name for parameter in SOCKETS)
 
 
 def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.types.Material:
@@ -125,12 +128,12 @@ def set_spectrum(material: bpy.types.Material, **keywords: Any) -> None:
     unknown = settings.keys() - set(SETTINGS)
     if unknown:
         raise ParameterError(f"{unknown.pop().keyword} is a socket; set it in the node {GROUP_NAME!r}")
-    _set_table(material, dielectric_node(material), settings, _table(settings))
+    _set_table(material, rendered_node(material), settings, _table(settings))
 
 
 def material_table(material: bpy.types.Material) -> np.ndarray | None:
     """Return the spectral table that a nested dielectric renders with, or None if the file has lost it."""
-    node = dielectric_node(material)
+    node = rendered_node(material)
     tables = node.node_tree.nodes.get(node_group.TABLES_NODE)
     image = None if tables is None else tables.image
     if image is None or not len(image.pixels):
@@ -143,7 +146,7 @@ def refresh_spectrum(material: bpy.types.Material) -> bool:
     """Bake a material's spectral table again if its settings, a file it was read from or the file's working space have
     changed; tell whether they had. Raises :class:`ParameterError` as :func:`set_spectrum` does.
     """
-    node = dielectric_node(material)
+    node = rendered_node(material)
     table = _table(check_keywords(spectrum_settings(material)))
     stale = not node_group.uses_table(node, table)
     if stale:
@@ -184,14 +187,25 @@ def _set_table(
 
 
 def dielectric_node(material: bpy.types.Material | None) -> bpy.types.ShaderNodeGroup | None:
-    """Return the group node that makes ``material`` a nested dielectric, or None."""
+    """Return the node that other media read ``material`` by, or None if it is no nested dielectric to them."""
     if material is None or material.node_tree is None:
         return None
     node = material.node_tree.nodes.get(GROUP_NAME)
     if node is None or node.type != "GROUP" or node.node_tree is None:
         return None
-    names = {socket.name for socket in node.inputs}
-    return node if all(parameter.name in names for parameter in SOCKETS) else None
+    return node if _NAMES.issubset(node.inputs.keys()) and shows_dielectric(material) else None
+
+
+def rendered_node(material: bpy.types.Material) -> bpy.types.ShaderNodeGroup | None:
+    """Return the node that renders a nested dielectric: that of :func:`dielectric_node` unless it stands in a group."""
+    places = dielectric_places(material)
+    return places[0][-1] if places else dielectric_node(material)
+
+
+def parameter_socket(material: bpy.types.Material, name: str) -> bpy.types.NodeSocket | None:
+    """Return the socket that an artist sets a parameter of a nested dielectric in, or None if other nodes make its value."""
+    places = dielectric_places(material)
+    return value_socket(places[0], name) if places else None
 
 
 def dielectrics(obj: bpy.types.Object) -> Iterator[tuple[int, bpy.types.Material]]:

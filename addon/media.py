@@ -11,6 +11,21 @@ import bpy
 
 from .materials import dielectric_node, dielectrics, may_disperse, medium_material, preset_material
 from .parameters import BY_KEYWORD, GROUP_NAME, MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
+from .trees import mend_nodes
+
+SOLID_TYPES = frozenset(("MESH", "CURVE", "SURFACE", "FONT", "META"))
+"""Types of objects whose surface may enclose something."""
+
+NO_SOLIDS = {
+    "POINTCLOUD": ("a point cloud", "instance a closed ball on its points instead (Geometry Nodes: Instance on Points)"),
+    "CURVES": (
+        "hair curves",
+        "turn it into a closed mesh (Geometry Nodes: Curve to Mesh with a profile and Fill Caps; Object > Convert > Mesh)",
+    ),
+    "VOLUME": ("a volume", "turn it into a mesh (the modifier Volume to Mesh of an empty mesh object)"),
+    "GREASEPENCIL": ("grease pencil", "turn it into a curve (Object > Convert > Curve) with a Bevel Depth and Fill Caps"),
+}
+"""Types that take a material and have no inside that Cycles' rays could be in: what they are, and what to do instead."""
 
 
 def assign(
@@ -23,18 +38,24 @@ def assign(
     a material of that preset that is already in the file is used again.
 
     :param priority: the object's own priority; None leaves that of the material in force.
-    :raises ParameterError: if the object cannot carry a material, or the preset or the priority is unknown.
+    :raises ParameterError: if the object cannot enclose a medium, or the preset or the priority is unknown.
     """
-    if getattr(obj.data, "materials", None) is None:
+    if obj.type not in SOLID_TYPES:
+        kind, remedy = NO_SOLIDS.get(obj.type, (obj.type.lower(), "choose another object"))
         raise ParameterError(
-            f"{obj.name!r} is {obj.type.lower()}; a medium needs a closed mesh, curve, surface, text or metaball"
+            f"{obj.name!r} is {kind}; a medium needs a closed mesh, curve, surface, text or metaball: {remedy}"
         )
     if priority is not None:
         check_priority(priority)
     if isinstance(material, str):
         material = preset_material(material)
-    elif dielectric_node(material) is None:
-        raise ParameterError(f"material {material.name!r} has no node {GROUP_NAME!r}; make it with new_material()")
+    else:
+        mend_nodes(material)
+        if dielectric_node(material) is None:
+            raise ParameterError(
+                f"material {material.name!r} has no node {GROUP_NAME!r} that reaches its output; "
+                "make it with new_material()"
+            )
     if obj.material_slots:
         obj.active_material = material
     else:
@@ -79,8 +100,8 @@ def get_priority(obj: bpy.types.Object) -> int:
     return dielectric_node(material).inputs["Priority"].default_value if own is None else own
 
 
-def media(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """Return every object of a scene that is a medium, those in instanced collections too, in winning order."""
+def all_objects(scene: bpy.types.Scene) -> set[bpy.types.Object]:
+    """Return the objects of a scene and those in instanced collections."""
     objects = set(scene.objects)
     pending = [obj.instance_collection for obj in objects if obj.instance_collection is not None]
     seen = set()
@@ -93,7 +114,12 @@ def media(scene: bpy.types.Scene) -> list[bpy.types.Object]:
             objects.add(obj)
             if obj.instance_collection is not None:
                 pending.append(obj.instance_collection)
-    return winning_order(objects)
+    return objects
+
+
+def media(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """Return every object of a scene that is a medium, those in instanced collections too, in winning order."""
+    return winning_order(all_objects(scene))
 
 
 def dispersing_materials(scene: bpy.types.Scene) -> list[bpy.types.Material]:

@@ -29,6 +29,17 @@ MATERIAL_SLOTS = 8
 CYCLES_OUTPUT = "Surface"
 VOLUME_OUTPUT = "Volume"
 PREVIEW_OUTPUT = "Preview"
+FACTS_PANEL = "Facts"
+
+FACT_OUTPUTS = {
+    "Surface Exists": ("FLOAT", "1 where the surface parts two media, 0 inside one that wins: a mask for dirt and labels"),
+    "Is Entrance": ("FLOAT", "1 where light from the air meets the medium"),
+    "Is Exit": ("FLOAT", "1 where light from the medium meets the air"),
+    "Priority Inside": ("FLOAT", "Of the object itself"),
+    "Priority Outside": ("FLOAT", "Of the medium that touches the object here; -1 in air, and where no surface exists"),
+    "Arriving Light": ("COLOR", "What the medium that the ray crossed has left of its light: a factor on what is mixed in"),
+}
+"""Outputs for nodes of the artist's own: kinds and descriptions. The shader's names are the same without spaces."""
 
 MATERIAL_VERSION = 3
 """Of the group and of all that stands in a file with it. A release that changes any of it counts on."""
@@ -234,7 +245,13 @@ def uses_table(node: bpy.types.ShaderNodeGroup, table: np.ndarray) -> bool:
     """Whether a material's group node uses this very spectral table."""
     image = node.node_tree.nodes[TABLES_NODE].image
     row = node.inputs[TABLE_SOCKET].default_value
-    return image is not None and row < len(image[TABLES]) and image[TABLES][row] == digest(table)
+    means = node.inputs[MEANS_SOCKET].default_value
+    return (
+        image is not None
+        and row < len(image[TABLES])
+        and image[TABLES][row] == digest(table)
+        and np.allclose(means, mean_cauchy_distances(table), rtol=1e-5)
+    )
 
 
 def set_table(node: bpy.types.ShaderNodeGroup, table: np.ndarray) -> None:
@@ -286,6 +303,19 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
         description="Where red, green and blue of that table have their mean index of refraction; set with it",
     )
     table.hide_value = means.hide_value = True
+    _add_fact_sockets(interface)
+
+
+def _add_fact_sockets(interface: bpy.types.NodeTreeInterface) -> None:
+    """Made last: keyframes of the other sockets are lost in an exchange of groups that number these otherwise."""
+    panel = interface.new_panel(
+        FACTS_PANEL, default_closed=True, description="What the surface knows, for your own nodes; free unless used"
+    )
+    for name, (kind, description) in FACT_OUTPUTS.items():
+        interface.new_socket(
+            name, in_out="OUTPUT", socket_type=_SOCKET_TYPES[kind], parent=panel, description=description
+        )
+    interface.move(panel, len((CYCLES_OUTPUT, VOLUME_OUTPUT, PREVIEW_OUTPUT)))
 
 
 def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:
@@ -351,7 +381,12 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         "Wavelength": "FLOAT",
     }
     script = add_script(
-        tree, "Nested Dielectric Shader", scripts[SHADER_FILE], kinds, {"BSDF": "SHADER", "Running": "FLOAT"}
+        tree,
+        "Nested Dielectric Shader",
+        scripts[SHADER_FILE],
+        kinds,
+        {"BSDF": "SHADER", "Running": "FLOAT"}
+        | {name.replace(" ", ""): kind for name, (kind, _) in FACT_OUTPUTS.items()},
     )
 
     for parameter in SOCKETS:
@@ -397,6 +432,8 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     links.new(_absorption(tree, coefficients, absorbs), outputs.inputs[VOLUME_OUTPUT])
 
     links.new(_preview(tree, inputs), outputs.inputs[PREVIEW_OUTPUT])
+    for name in FACT_OUTPUTS:
+        links.new(script.outputs[name.replace(" ", "")], outputs.inputs[name])
     _arrange(tree)
 
 

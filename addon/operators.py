@@ -12,9 +12,9 @@ from .choice import Choice
 from .compatibility import UnsupportedError, blender_problem
 from .dispersion import LINE_D, sellmeier_ior
 from .materials import (
-    dielectric_node,
     get_parameter,
     medium_material,
+    rendered_node,
     set_parameter,
     set_spectrum,
     spectrum_settings,
@@ -38,7 +38,6 @@ LAMP_CARRIERS = (
 
 SELLMEIER_REMEDY = "correct Sellmeier B and C; C holds squares of wavelengths in square micrometres"
 
-_SOLID_TYPES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 _FILE = "FILE"
 _ILLUMINANT_GROUPS = (
     ("FL", "CIE Fluorescent Lamps"),
@@ -98,8 +97,8 @@ def coefficients_ior(node: bpy.types.ShaderNodeGroup) -> float:
 
 def _targets(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The selected objects that can be media, or else the active object."""
-    selected = [obj for obj in context.selected_editable_objects or () if obj.type in _SOLID_TYPES]
-    return selected or [obj for obj in [context.object] if obj is not None and obj.type in _SOLID_TYPES]
+    selected = [obj for obj in context.selected_editable_objects or () if obj.type in media.SOLID_TYPES]
+    return selected or [obj for obj in [context.object] if obj is not None and obj.type in media.SOLID_TYPES]
 
 
 def _supported(cls: type[bpy.types.Operator]) -> bool:
@@ -230,7 +229,7 @@ class DispersionModel(_MaterialOperator):
 
     def change(self, material: bpy.types.Material) -> None:
         parameter = BY_KEYWORD["dispersion_model"]
-        set_parameter(dielectric_node(material), parameter, parameter.check(self.model))
+        set_parameter(rendered_node(material), parameter, parameter.check(self.model))
 
 
 class SellmeierIor(_MaterialOperator):
@@ -243,14 +242,14 @@ class SellmeierIor(_MaterialOperator):
     def poll(cls, context: bpy.types.Context) -> bool:
         if not super().poll(context):
             return False
-        node = dielectric_node(active_medium(context))
+        node = rendered_node(active_medium(context))
         if get_parameter(node, BY_KEYWORD["dispersion_model"]) != "SELLMEIER":
             cls.poll_message_set("Choose Sellmeier as the dispersion model first")
             return False
         return True
 
     def change(self, material: bpy.types.Material) -> None:
-        node = dielectric_node(material)
+        node = rendered_node(material)
         index = coefficients_ior(node)
         if isnan(index):
             raise ParameterError(f"these coefficients have no real index at 587.6 nm; {SELLMEIER_REMEDY}")
@@ -299,7 +298,7 @@ class Spectrum(_MaterialOperator):
     def poll(cls, context: bpy.types.Context) -> bool:
         if not super().poll(context):
             return False
-        group = dielectric_node(active_medium(context)).node_tree
+        group = rendered_node(active_medium(context)).node_tree
         if not group.is_editable:
             cls.poll_message_set(f"Node group {group.name!r} belongs to a library; make it local first")
             return False

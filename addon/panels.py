@@ -12,7 +12,14 @@ from .analysis import last_found
 from .compatibility import achromatic_reason, blender_note, blender_problem, settings_problem, shows_front_ior
 from .dispersion import LINE_C, LINE_D, LINE_F, abbe_number, material_ior
 from .lights import LOBE, NOTHING, RAYS, light_carriers
-from .materials import dielectric_node, get_parameter, material_table, medium_material, spectrum_settings
+from .materials import (
+    get_parameter,
+    material_table,
+    medium_material,
+    parameter_socket,
+    rendered_node,
+    spectrum_settings,
+)
 from .media import get_priority, media, own_priority, winning_order
 from .operators import (
     LAMP_CARRIERS,
@@ -203,7 +210,9 @@ def draw_active(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     if material is not None:
         column = layout.column(align=True)
         column.label(text=f"{obj.name}: {material.name}", icon="MATERIAL")
-        column.prop(dielectric_node(material).inputs["Priority"], "default_value", text="Priority of Material")
+        socket = parameter_socket(material, "Priority")
+        if socket is not None:
+            column.prop(socket, "default_value", text="Priority of Material")
         draw_priority(column.row(align=True), obj, text="Priority")
     layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Assign Preset", icon="MATERIAL")
 
@@ -223,7 +232,7 @@ def draw_analysis(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
 
 def draw_dispersion(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """The dispersion of the active medium: its sockets, what they come to, and what keeps colours from showing."""
-    node = dielectric_node(active_medium(context))
+    node = rendered_node(active_medium(context))
     layout.use_property_split = True
     layout.use_property_decorate = False
     disperse = node.inputs["Disperse"]

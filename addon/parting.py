@@ -11,8 +11,9 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from .analysis import Coincidence, coincidences, is_offset
+from .analysis import Coincidence, coincidences, is_offset, triangles_of
 from .checks import Problem
+from .meshes import is_closed, same_places
 from .node_group import OFFSET_GROUP
 
 OFFSET_ATTRIBUTE = "nd_offset"
@@ -37,7 +38,9 @@ def part_coincident(scene: bpy.types.Scene) -> tuple[list[str], list[Problem]]:
                 Problem(
                     found.obj.name,
                     f"has faces in the same place as {found.others}",
-                    "let them overlap, or apply its modifiers and make its mesh single-user: then they are parted",
+                    "let them overlap, or apply its modifiers and make its mesh single-user: then they are parted"
+                    if found.obj.type == "MESH"
+                    else "let them overlap, or turn it into a mesh (Object > Convert > Mesh): then they are parted",
                 )
             )
             continue
@@ -54,7 +57,8 @@ def _is_movable(obj: bpy.types.Object) -> bool:
     """Whether the points of the mesh are those of the evaluated one, and no other object's."""
     mesh = obj.data
     return (
-        obj.library is None
+        isinstance(mesh, bpy.types.Mesh)
+        and obj.library is None
         and mesh.library is None
         and mesh.users == 1
         and mesh.shape_keys is None
@@ -89,6 +93,9 @@ def offsets(count: int, corners: np.ndarray, normals: np.ndarray, heights: np.nd
 def _move(found: Coincidence, distance: float) -> None:
     mesh = found.obj.data
     world = offsets(len(mesh.vertices), found.corners, found.normals, distance * found.sides)
+    vertices, triangles = triangles_of(mesh)
+    if not is_closed(triangles):
+        world = world[same_places(vertices)]  # both sides of a seam
     local = world @ np.linalg.inv(found.matrix[:3, :3]).T
     attribute = mesh.attributes.get(OFFSET_ATTRIBUTE)
     if attribute is None:

@@ -17,6 +17,7 @@ from .materials import refresh_spectrum
 from .media import dispersing_materials, media
 from .parameters import ParameterError
 from .parting import part_coincident
+from .trees import complete_nodes, mend_nodes
 from .versions import mend_materials, version_problems
 
 AT_LEAST = {
@@ -58,6 +59,8 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     """
     require_blender()
     changes = list(mend_materials())
+    for material in bpy.data.materials:
+        changes += mend_nodes(material) + complete_nodes(material)
     ensure = partial(_ensure, changes)
     ensure(scene.render, "engine", "CYCLES", "Render Engine")
     ensure(scene.cycles, "shading_system", True, "Open Shading Language")

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 import bpy
 
 from . import live, operators, panels, versions
+from .checks import material_problems
 from .compatibility import blender_note, blender_problem, settings_problem
 from .media import media
 
@@ -78,6 +79,8 @@ def warn_before_render(scene: bpy.types.Scene, *_: object) -> None:
     problem = blender_problem() or settings_problem(scene)
     if problem and media(scene):
         print(f"Nested Dielectric: {problem}", file=sys.stderr)
+    for each in material_problems(scene):
+        print(f"Nested Dielectric: {each}", file=sys.stderr)
 
 
 @bpy.app.handlers.persistent

@@ -33,6 +33,7 @@ from .node_group import (
 )
 from .parameters import ParameterError
 from .spectral_images import TABLES, read_rows
+from .trees import curves
 
 
 def update_materials() -> tuple[str, ...]:
@@ -237,7 +238,7 @@ def _follow_sockets(moved: dict[bpy.types.NodeTree, dict[str, str]]) -> None:
         return
     seen: set[int] = set()
     for tree, places in moved.items():
-        for curve in _curves(tree.animation_data):
+        for curve in curves(tree.animation_data):
             if curve.as_pointer() not in seen:  # trees may share an action
                 seen.add(curve.as_pointer())
                 curve.data_path = _moved(curve.data_path, places)
@@ -257,22 +258,6 @@ def _moved(path: str, places: dict[str, str]) -> str:
         if path.startswith(old):
             return new + path.removeprefix(old)
     return path
-
-
-def _curves(animation: bpy.types.AnimData | None) -> Iterator[bpy.types.FCurve]:
-    """The drivers and keyframes of one data-block, in its action and in strips."""
-    if animation is None:
-        return
-    yield from animation.drivers
-    actions = [(animation.action, animation.action_slot)]
-    actions += [(strip.action, strip.action_slot) for track in animation.nla_tracks for strip in track.strips]
-    for action, slot in actions:
-        if action is None or slot is None:
-            continue
-        for strip in (strip for layer in action.layers for strip in layer.strips):
-            bag = strip.channelbag(slot)
-            if bag is not None:
-                yield from bag.fcurves
 
 
 def _all_data() -> Iterator[bpy.types.ID]:

@@ -169,7 +169,7 @@ def test_keyframes_and_drivers_follow_sockets_that_moved():
     # The paths as that version would have written them.
     places = {name: place for place, name in enumerate(socket.name for socket in inputs("Glass"))}
     for name in ("Glass", "Water"):
-        for curve in versions._curves(bpy.data.materials[name].node_tree.animation_data):
+        for curve in versions.curves(bpy.data.materials[name].node_tree.animation_data):
             before = int(curve.data_path.partition("inputs[")[2].partition("]")[0])
             curve.data_path = curve.data_path.replace(f"inputs[{before}]", f"inputs[{places[names[before]]}]")
     target = bpy.data.objects["Water"].animation_data.drivers[0].driver.variables[0].targets[0]
