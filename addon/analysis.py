@@ -21,7 +21,7 @@ import numpy as np
 from . import contacts
 from .contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
 from .materials import dielectric_node
-from .media import media, own_priority
+from .media import material_priority, media, own_priority
 from .node_group import (
     AIR_AROUND,
     BY_OBJECT,
@@ -32,14 +32,15 @@ from .node_group import (
     MATERIAL_SLOTS,
     NEIGHBOUR_VALUES,
     OBJECT_PROPERTIES,
-    OFFSET_GROUP,
     OUTSIDE_SOCKET,
     OVERLAP_SOCKET,
     SLOTS_SOCKET,
     SURROUNDINGS_COLOR_SOCKET,
     SURROUNDINGS_SOCKET,
     has_analysis,
+    is_offset_group,
 )
+from .parameters import BY_NAME
 
 ANALYSED = "nd_analysed"
 """Custom property of a scene whose media are kept analysed."""
@@ -79,6 +80,9 @@ NEAR = 1e-3
 
 PATIENCE = 0.03
 """Seconds that one look at a scene may take while the mouse moves something in it."""
+
+_SENSELESS = -1
+"""A code that no surface is told, for what others have put in place of an object's properties."""
 
 HIGHEST_OBJECT_LEVEL = 2.0**17
 """Of an object's own; single precision keeps it and all that stands beside it."""
@@ -639,13 +643,12 @@ def _facts(material: bpy.types.Material) -> _Facts:
         and not node.inputs["Disperse"].default_value
         and not any(node.inputs[n].is_linked for n in NEIGHBOUR_VALUES)
     ):
-        ior, transmittance, depth = (node.inputs[name].default_value for name in NEIGHBOUR_VALUES)
-        values = (ior, tuple(transmittance), depth)
+        values = tuple(BY_NAME[name].bounded(node.inputs[name].default_value) for name in NEIGHBOUR_VALUES)
     priority = node.inputs["Priority"]
     output = tree.get_output_node("CYCLES")
     return _Facts(
         values,
-        priority.default_value if still and not priority.is_linked else None,
+        material_priority(material) if still and not priority.is_linked else None,
         output is not None and output.inputs["Displacement"].is_linked and material.displacement_method != "BUMP",
         has_analysis(node),
     )
@@ -719,7 +722,7 @@ def _is_settled(modifier: bpy.types.Modifier) -> bool:
 
 def is_offset(modifier: bpy.types.Modifier) -> bool:
     """Whether it is the modifier that parts faces in the same place, which keeps all faces."""
-    return modifier.type == "NODES" and modifier.node_group is not None and modifier.node_group.name == OFFSET_GROUP
+    return modifier.type == "NODES" and is_offset_group(modifier.node_group)
 
 
 def _is_exact(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
@@ -973,9 +976,15 @@ def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
             if before is not None:
                 del obj[name]
                 obj.update_tag()
-        elif before is None or tuple(before) != value:
+        elif _four(before) != value:
+            obj.pop(name, None)  # or it may keep another type
             obj[name] = value
             obj.update_tag()
+
+
+def _four(value: object) -> tuple | None:
+    """The four numbers that a custom property holds, or None if others have put anything else there."""
+    return tuple(value) if getattr(value, "typecode", None) in ("f", "d") and len(value) == 4 else None
 
 
 def _facts_in_one(outside: Outside) -> float:
@@ -1001,28 +1010,35 @@ def _outside_in(material: bpy.types.Material) -> Outside:
 
 def _outside_of(obj: bpy.types.Object) -> Outside:
     """What an object's custom properties tell, the other way round than :func:`_facts_in_one`."""
-    medium, transmittance = (obj.get(name) for name in OBJECT_PROPERTIES)
-    if medium is None:
+    if not any(name in obj for name in OBJECT_PROPERTIES):
         return Outside()
+    medium, transmittance = (_four(obj.get(name)) for name in OBJECT_PROPERTIES)
+    if medium is None or not 0.0 <= medium[0] <= 2.0**24:
+        return Outside(_SENSELESS)
     facts = int(medium[0])
     return Outside(
         facts & 7,
         (facts >> 6) - 1.0,
         bool(facts & 8),
         not facts & 16,
-        tuple(medium[1:]),
-        tuple(transmittance) if facts & 32 and transmittance is not None else CLEAR,
+        medium[1:],
+        transmittance if facts & 32 and transmittance is not None else CLEAR,
     )
 
 
 def _faces_of(mesh: bpy.types.Mesh) -> np.ndarray | None:
     """What a mesh tells its faces."""
     attribute = mesh.attributes.get(FACE_ATTRIBUTE)
-    if attribute is None:
+    if attribute is None or not _tells_faces(attribute):
         return None
     faces = np.empty(len(mesh.polygons), dtype=np.int8)
     attribute.data.foreach_get("value", faces)
     return faces
+
+
+def _tells_faces(attribute: bpy.types.Attribute) -> bool:
+    """Whether an attribute of that name has the form that an analysis gives it."""
+    return (attribute.data_type, attribute.domain) == ("INT8", "FACE")
 
 
 def _heard(obj: bpy.types.Object, material: bpy.types.Material) -> _Told:
@@ -1043,6 +1059,8 @@ def _tell_faces(mesh: bpy.types.Mesh, faces: np.ndarray | None) -> None:
             mesh.update_tag()
         return
     if before is None:
+        if FACE_ATTRIBUTE in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[FACE_ATTRIBUTE])
         mesh.attributes.new(FACE_ATTRIBUTE, "INT8", "FACE")
     if before is None or not np.array_equal(before, faces):
         mesh.attributes[FACE_ATTRIBUTE].data.foreach_set("value", faces)

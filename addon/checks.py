@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -10,12 +11,13 @@ import numpy as np
 from mathutils.bvhtree import BVHTree
 
 from . import meshes
+from .animation import curves
 from .analysis import triangles_of
 from .lights import carried_lamps, light_carriers, listed_lamps
 from .materials import dielectric_node, dielectrics, medium_material
-from .media import dispersing_materials, get_priority, media
-from .node_group import MATERIAL_SLOTS, group_version
-from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
+from .media import dispersing_materials, get_priority, media, own_priority
+from .node_group import DAMAGED, MATERIAL_SLOTS, group_version
+from .parameters import GROUP_NAME, MAX_PRIORITY, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,7 @@ def find_problems(scene: bpy.types.Scene) -> list[Problem]:
     shapes = [shape for obj in objects if (shape := _shape(obj, depsgraph)) is not None]
     problems = [problem for obj in scene.objects for problem in _node_problems(obj)]
     problems += [problem for obj in objects for problem in _object_problems(obj)]
+    problems += _value_problems(objects)
     for shape in shapes:
         problems += _mesh_problems(shape)
     problems += _overlap_problems(shapes)
@@ -64,15 +67,23 @@ def _depsgraph(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
 
 
 def _node_problems(obj: bpy.types.Object) -> list[Problem]:
-    """A group node by another name renders, but its neighbours take the object for a foreign one."""
+    """A group node by another name renders, but its neighbours take the object for a foreign one; so do they where others
+    have taken sockets from its group.
+    """
     return [
         Problem(
+            obj.name,
+            f"has a nested dielectric in material {slot.material.name!r} whose group {node.node_tree.name!r} is damaged",
+            "press Prepare Scene, in the library's own file if it is linked",
+        )
+        if group_version(node.node_tree) == DAMAGED
+        else Problem(
             obj.name,
             f"has a nested dielectric in material {slot.material.name!r} whose node is named {node.name!r}",
             f"rename the node to {GROUP_NAME!r}",
         )
         for slot in obj.material_slots
-        if slot.material is not None and dielectric_node(slot.material) is None
+        if slot.material is not None and slot.material.node_tree is not None and dielectric_node(slot.material) is None
         for node in slot.material.node_tree.nodes
         if node.type == "GROUP" and group_version(node.node_tree) is not None
     ]
@@ -98,16 +109,7 @@ def _shape(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Shape | No
 
 
 def _object_problems(obj: bpy.types.Object) -> list[Problem]:
-    problems = []
-    value = obj.get(PRIORITY_PROPERTY)
-    if value is not None and not isinstance(value, int):
-        problems.append(
-            Problem(
-                obj.name,
-                f"has the custom property {PRIORITY_PROPERTY!r} with no whole number in it",
-                "delete it, or set its priority again",
-            )
-        )
+    problems = _priority_problems(obj)
     for slot, material in dielectrics(obj):
         if slot >= MATERIAL_SLOTS:
             problems.append(
@@ -128,6 +130,66 @@ def _object_problems(obj: bpy.types.Object) -> list[Problem]:
                     )
                 )
     return problems
+
+
+def _priority_problems(obj: bpy.types.Object) -> list[Problem]:
+    """A custom property that is no whole number, or is animated beyond what counts."""
+    value = obj.get(PRIORITY_PROPERTY)
+    if value is None:
+        return []
+    problems = []
+    own = own_priority(obj)
+    if own is None or type(value) is not int:
+        counts = f"counts as {own}" if own is not None else f"does not count: {get_priority(obj)}, its material's, does"
+        problems.append(
+            Problem(
+                obj.name,
+                f"has the custom property {PRIORITY_PROPERTY!r} with no whole number from 0 to {MAX_PRIORITY} in it, "
+                f"which {counts}",
+                "delete it, or set its priority again",
+            )
+        )
+    path = f'["{PRIORITY_PROPERTY}"]'
+    keys = [key for curve in curves(obj.animation_data) if curve.data_path == path for key in curve.keyframe_points]
+    if any(not 0.0 <= key.co[1] <= MAX_PRIORITY for key in keys):
+        problems.append(
+            Problem(
+                obj.name,
+                f"has keyframes of its priority beyond 0 to {MAX_PRIORITY}, where its material's counts",
+                "move them, or delete them",
+            )
+        )
+    return problems
+
+
+def _value_problems(objects: list[bpy.types.Object]) -> list[Problem]:
+    """Values of sockets that only a script can set: the shader takes the nearest within limits, or the default."""
+    problems = []
+    users = {material: obj for obj in reversed(objects) for _, material in dielectrics(obj)}
+    for material, obj in users.items():
+        node = dielectric_node(material)
+        for parameter in SOCKETS:
+            socket = node.inputs[parameter.name]
+            if parameter.limits is None or socket.is_linked:
+                continue
+            value = socket.default_value
+            counts = parameter.bounded(value)
+            if not np.array_equal(np.float32(value), np.float32(counts)):
+                problems.append(
+                    Problem(
+                        obj.name,
+                        f"has {_shown(value)} for {parameter.name!r} in material {material.name!r}, "
+                        f"which counts as {_shown(counts)}",
+                        f"set it to something from {parameter.limits[0]:g} to {parameter.limits[1]:g}",
+                    )
+                )
+    return problems
+
+
+def _shown(value: float | Sequence[float]) -> str:
+    if isinstance(value, (int, float)):
+        return f"{value:.4g}"
+    return f"({', '.join(f'{component:.4g}' for component in tuple(value)[:3])})"
 
 
 def _mesh_problems(shape: _Shape) -> list[Problem]:

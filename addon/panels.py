@@ -12,7 +12,7 @@ from .analysis import last_found
 from .compatibility import achromatic_reason, blender_note, blender_problem, settings_problem, shows_front_ior
 from .dispersion import LINE_C, LINE_D, LINE_F, abbe_number, material_ior
 from .lights import LOBE, NOTHING, RAYS, light_carriers
-from .materials import dielectric_node, get_parameter, material_table, medium_material, spectrum_settings
+from .materials import dielectric_node, get_parameter, material_table, medium_material, usable_spectrum_settings
 from .media import get_priority, media, own_priority, winning_order
 from .operators import (
     LAMP_CARRIERS,
@@ -125,7 +125,9 @@ def draw_priority(layout: bpy.types.UILayout, obj: bpy.types.Object, text: str =
     else:
         value = layout.row(align=True)
         value.active = False
-        value.label(text=f"{text} {get_priority(obj)}", icon="MATERIAL")
+        odd = PRIORITY_PROPERTY in obj
+        value.alert = odd
+        value.label(text=f"{text} {get_priority(obj)}", icon="ERROR" if odd else "MATERIAL")
     toggle = layout.operator(PriorityOwn.bl_idname, text="", icon="PINNED" if own else "UNPINNED", depress=own)
     toggle.name = obj.name
 
@@ -283,7 +285,7 @@ def draw_value(layout: bpy.types.UILayout, name: str, value: str) -> None:
 def draw_spectrum(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """The active medium's spectral table: its picture, what it was baked from, and the button to bake another."""
     material = active_medium(context)
-    settings = spectrum_settings(material)
+    settings = usable_spectrum_settings(material)
     table = material_table(material)
     if table is not None:
         layout.template_icon(icon_value=picture(table), scale=6.0)
