@@ -25,7 +25,7 @@ from . import contacts, meshes
 from .contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
 from .materials import dielectric_node
 from .identity import NO_SCENE, known_number, scene_number
-from .media import media, own_priority
+from .media import material_priority, media, own_priority
 from .node_group import (
     AIR_AROUND,
     ANALYSED,
@@ -37,7 +37,6 @@ from .node_group import (
     MATERIAL_SLOTS,
     NEIGHBOUR_VALUES,
     OBJECT_PROPERTIES,
-    OFFSET_GROUP,
     OUTSIDE_SOCKET,
     OVERLAP_SOCKET,
     SCENE_SOCKET,
@@ -45,7 +44,9 @@ from .node_group import (
     SURROUNDINGS_COLOR_SOCKET,
     SURROUNDINGS_SOCKET,
     has_analysis,
+    is_offset_group,
 )
+from .parameters import BY_NAME
 from .trees import is_plugged
 
 SETTLED_MODIFIERS = frozenset(
@@ -736,13 +737,12 @@ def _facts(material: bpy.types.Material) -> _Facts:
         and not node.inputs["Disperse"].default_value
         and not any(node.inputs[n].is_linked for n in NEIGHBOUR_VALUES)
     ):
-        ior, transmittance, depth = (node.inputs[name].default_value for name in NEIGHBOUR_VALUES)
-        values = (ior, tuple(transmittance), depth)
+        values = tuple(BY_NAME[name].bounded(node.inputs[name].default_value) for name in NEIGHBOUR_VALUES)
     priority = node.inputs["Priority"]
     output = tree.get_output_node("CYCLES")
     return _Facts(
         values,
-        priority.default_value if still and not priority.is_linked else None,
+        material_priority(material) if still and not priority.is_linked else None,
         output is not None and output.inputs["Displacement"].is_linked and material.displacement_method != "BUMP",
         has_analysis(node) and is_plugged(node),
     )
@@ -843,7 +843,7 @@ def _is_settled(modifier: bpy.types.Modifier) -> bool:
 
 def is_offset(modifier: bpy.types.Modifier) -> bool:
     """Whether it is the modifier that parts faces in the same place, which keeps all faces."""
-    return modifier.type == "NODES" and modifier.node_group is not None and modifier.node_group.name == OFFSET_GROUP
+    return modifier.type == "NODES" and is_offset_group(modifier.node_group)
 
 
 def _is_exact(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
@@ -1097,9 +1097,15 @@ def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
             if before is not None:
                 del obj[name]
                 obj.update_tag()
-        elif before is None or tuple(before) != value:
+        elif _four(before) != value:
+            obj.pop(name, None)  # or it may keep another type
             obj[name] = value
             obj.update_tag()
+
+
+def _four(value: object) -> tuple | None:
+    """The four numbers that a custom property holds, or None if others have put anything else there."""
+    return tuple(value) if getattr(value, "typecode", None) in ("f", "d") and len(value) == 4 else None
 
 
 def _facts_in_one(outside: Outside) -> float:
@@ -1113,11 +1119,16 @@ def _facts_in_one(outside: Outside) -> float:
 def _faces_of(mesh: bpy.types.Mesh) -> np.ndarray | None:
     """What a mesh tells its faces."""
     attribute = mesh.attributes.get(FACE_ATTRIBUTE)
-    if attribute is None:
+    if attribute is None or not _tells_faces(attribute):
         return None
     faces = np.empty(len(mesh.polygons), dtype=np.int8)
     attribute.data.foreach_get("value", faces)
     return faces
+
+
+def _tells_faces(attribute: bpy.types.Attribute) -> bool:
+    """Whether an attribute of that name has the form that an analysis gives it."""
+    return (attribute.data_type, attribute.domain) == ("INT8", "FACE")
 
 
 def _tell_faces(mesh: bpy.types.Mesh, faces: np.ndarray | None) -> None:
@@ -1131,6 +1142,8 @@ def _tell_faces(mesh: bpy.types.Mesh, faces: np.ndarray | None) -> None:
             mesh.update_tag()
         return
     if before is None:
+        if FACE_ATTRIBUTE in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[FACE_ATTRIBUTE])
         mesh.attributes.new(FACE_ATTRIBUTE, "INT8", "FACE")
     if before is None or not np.array_equal(before, faces):
         mesh.attributes[FACE_ATTRIBUTE].data.foreach_set("value", faces)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
@@ -11,11 +12,12 @@ from mathutils.bvhtree import BVHTree
 
 from . import meshes
 from .analysis import is_relative, triangles_of
+from .animation import curves
 from .lights import carried_lamps, light_carriers, listed_lamps
 from .materials import dielectric_node, dielectrics, may_disperse, medium_material
-from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media
+from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media, own_priority
 from .node_group import MATERIAL_SLOTS
-from .parameters import NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY
+from .parameters import MAX_PRIORITY, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS
 from .trees import node_problems, shows_others_blindly, socket_value
 
 
@@ -52,6 +54,7 @@ def find_problems(scene: bpy.types.Scene) -> list[Problem]:
     problems = material_problems(scene)
     problems += _kind_problems(depsgraph)
     problems += [problem for obj in objects for problem in _object_problems(obj)]
+    problems += _value_problems(objects)
     for shape in shapes:
         problems += _mesh_problems(shape, shapes) + _mixture_problems(shape)
     problems += _overlap_problems(shapes)
@@ -136,16 +139,7 @@ def _is_hair(obj: bpy.types.Object, system: bpy.types.ParticleSystem) -> bool:
 
 
 def _object_problems(obj: bpy.types.Object) -> list[Problem]:
-    problems = []
-    value = obj.get(PRIORITY_PROPERTY)
-    if value is not None and not isinstance(value, int):
-        problems.append(
-            Problem(
-                obj.name,
-                f"has the custom property {PRIORITY_PROPERTY!r} with no whole number in it",
-                "delete it, or set its priority again",
-            )
-        )
+    problems = _priority_problems(obj)
     for slot, _ in dielectrics(obj):
         if slot >= MATERIAL_SLOTS:
             problems.append(
@@ -156,6 +150,66 @@ def _object_problems(obj: bpy.types.Object) -> list[Problem]:
                 )
             )
     return problems
+
+
+def _priority_problems(obj: bpy.types.Object) -> list[Problem]:
+    """A custom property that is no whole number, or is animated beyond what counts."""
+    value = obj.get(PRIORITY_PROPERTY)
+    if value is None:
+        return []
+    problems = []
+    own = own_priority(obj)
+    if own is None or type(value) is not int:
+        counts = f"counts as {own}" if own is not None else f"does not count: {get_priority(obj)}, its material's, does"
+        problems.append(
+            Problem(
+                obj.name,
+                f"has the custom property {PRIORITY_PROPERTY!r} with no whole number from 0 to {MAX_PRIORITY} in it, "
+                f"which {counts}",
+                "delete it, or set its priority again",
+            )
+        )
+    path = f'["{PRIORITY_PROPERTY}"]'
+    keys = [key for curve in curves(obj.animation_data) if curve.data_path == path for key in curve.keyframe_points]
+    if any(not 0.0 <= key.co[1] <= MAX_PRIORITY for key in keys):
+        problems.append(
+            Problem(
+                obj.name,
+                f"has keyframes of its priority beyond 0 to {MAX_PRIORITY}, where its material's counts",
+                "move them, or delete them",
+            )
+        )
+    return problems
+
+
+def _value_problems(objects: list[bpy.types.Object]) -> list[Problem]:
+    """Values of sockets that only a script can set: the shader takes the nearest within limits, or the default."""
+    problems = []
+    users = {material: obj for obj in reversed(objects) for _, material in dielectrics(obj)}
+    for material, obj in users.items():
+        node = dielectric_node(material)
+        for parameter in SOCKETS:
+            socket = node.inputs[parameter.name]
+            if parameter.limits is None or socket.is_linked:
+                continue
+            value = socket.default_value
+            counts = parameter.bounded(value)
+            if not np.array_equal(np.float32(value), np.float32(counts)):
+                problems.append(
+                    Problem(
+                        obj.name,
+                        f"has {_shown(value)} for {parameter.name!r} in material {material.name!r}, "
+                        f"which counts as {_shown(counts)}",
+                        f"set it to something from {parameter.limits[0]:g} to {parameter.limits[1]:g}",
+                    )
+                )
+    return problems
+
+
+def _shown(value: float | Sequence[float]) -> str:
+    if isinstance(value, (int, float)):
+        return f"{value:.4g}"
+    return f"({', '.join(f'{component:.4g}' for component in tuple(value)[:3])})"
 
 
 _EMPTY = {

@@ -161,6 +161,7 @@ def _list_lamps() -> bool:
     if (
         tree.get(LIGHTS_VERSION_PROPERTY) == MATERIAL_VERSION
         and _listed() == wanted
+        and len(tree.animation_data.drivers if tree.animation_data else ()) == sum(_driver_count(lamp) for _, lamp in wanted)
         and all(node.inputs["Type"].default_value == _type(lamp.data) for (_, lamp), node in zip(wanted, _script_nodes(tree)))
     ):
         return False
@@ -203,7 +204,7 @@ def _number(node: bpy.types.ShaderNodeScript) -> int:
 
 
 def _script_nodes(tree: bpy.types.NodeTree) -> list[bpy.types.ShaderNodeScript]:
-    nodes = (node for node in tree.nodes if node.type == "SCRIPT")
+    nodes = (node for node in tree.nodes if node.type == "SCRIPT" and all(name in node.inputs for name in _SOCKETS))
     return sorted(nodes, key=lambda node: node.inputs["Index"].default_value)
 
 
@@ -221,17 +222,28 @@ def _visibility_moves(lamp: bpy.types.Object) -> bool:
 def _driving_lamp(tree: bpy.types.NodeTree, node: bpy.types.ShaderNodeScript) -> bpy.types.Object | None:
     path = node.inputs["Energy"].path_from_id("default_value")
     curve = tree.animation_data.drivers.find(path) if tree.animation_data else None
-    return None if curve is None else curve.driver.variables[0].targets[0].id
+    targets = [target for variable in (curve.driver.variables if curve else ()) for target in variable.targets]
+    return targets[0].id if targets else None
+
+
+def _driver_count(lamp: bpy.types.Object) -> int:
+    """How many drivers keep a lamp's node up to date."""
+    return len(_values(lamp.data)) + 3 * (len(_COLORS) + len(_TRANSFORMS))
+
+
+def _values(light: bpy.types.Light) -> dict[str, str]:
+    """Sockets of a lamp's node that hold one number, and the paths from the lamp that they follow."""
+    sizes = dict(_SIZES[light.type])
+    if light.type == "AREA" and light.shape in ("SQUARE", "DISK"):
+        sizes["SizeY"] = sizes["Size"]
+    return _VALUES | sizes
 
 
 def _set_lamp(node: bpy.types.ShaderNodeScript, index: int, lamp: bpy.types.Object) -> None:
     light = lamp.data
     node.inputs["Index"].default_value = index
     node.inputs["Type"].default_value = _type(light)
-    sizes = dict(_SIZES[light.type])
-    if light.type == "AREA" and light.shape in ("SQUARE", "DISK"):
-        sizes["SizeY"] = sizes["Size"]
-    for name, path in (_VALUES | sizes).items():
+    for name, path in _values(light).items():
         _drive(node.inputs[name], -1, lamp, path)
     for name, path in _COLORS.items():
         for channel in range(3):

@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from . import node_group
+from .animation import curves, is_animated
 from .dispersion import LINE_D, sellmeier_ior
 from .parameters import (
     BY_KEYWORD,
@@ -20,13 +21,17 @@ from .parameters import (
     ParameterError,
     check_keywords,
 )
-from .presets import load_preset
+from .presets import Preset, load_preset
 from .spectra import SpectrumError, spectral_table
-from .spectral_images import read_rows
 from .trees import dielectric_places, shows_dielectric, value_socket
 from .working_space import working_gamut
 
-_NAMES = frozenset(parameter.name for parameter in SOCKETS)
+_SOCKET_KINDS = {"FLOAT": "VALUE", "BOOL": "BOOLEAN", "COLOR": "RGBA", "INDEX": "INT"}
+_KINDS = {(parameter.name, _SOCKET_KINDS.get(parameter.kind, parameter.kind)) for parameter in SOCKETS}
+"""Sockets by which a group node is known, with Blender's words for their kinds."""
+
+PRESET_PROPERTY = "nd_preset"
+"""Custom property of materials that presets made: what they are and where their numbers come from."""
 
 
 def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.types.Material:
@@ -38,12 +43,8 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
         coefficients and no ``ior`` the index is that of the coefficients.
     :raises ParameterError: for an unknown preset or keyword, or a value outside its limits. Nothing has been made then.
     """
-    values: dict[Parameter, Any] = {}
-    description = ""
-    if preset is not None:
-        loaded = load_preset(preset)
-        description = f"{loaded.description} {loaded.source}"
-        values.update(check_keywords(loaded.parameters))
+    loaded = None if preset is None else load_preset(preset)
+    values = {} if loaded is None else check_keywords(loaded.parameters)
     values.update(check_keywords(keywords))
     if keywords.keys() & {"sellmeier_b", "sellmeier_c"} and "ior" not in keywords:
         values[BY_KEYWORD["ior"]] = _sellmeier_index(values)
@@ -72,8 +73,8 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
     _set_table(material, node, settings, table)
     material.use_transparent_shadow = True
     material.diffuse_color = (*node.inputs["Transmittance"].default_value[:3], 0.3)
-    if description:
-        material["nd_preset"] = description
+    if loaded is not None:
+        material[PRESET_PROPERTY] = f"{loaded.description} {loaded.source}"
     return material
 
 
@@ -108,13 +109,28 @@ def get_parameter(node: bpy.types.ShaderNodeGroup, parameter: Parameter) -> Any:
     if parameter.kind == "INDEX":
         return parameter.choices[min(max(value, 0), len(parameter.choices) - 1)].keyword
     if parameter.kind == "MENU":
-        return next(choice.keyword for choice in parameter.choices if choice.name == value)
+        return next((choice.keyword for choice in parameter.choices if choice.name == value), parameter.default)
     return tuple(value)[:3] if parameter.kind in ("COLOR", "VECTOR") else value
 
 
 def spectrum_settings(material: bpy.types.Material) -> dict[str, Any]:
-    """Return the keywords that a nested dielectric's spectral table is baked from."""
+    """Return the keywords that a nested dielectric's spectral table is baked from, as the material keeps them: a custom
+    property may hold anything.
+    """
     return {parameter.keyword: material.get(parameter.keyword, parameter.default) for parameter in SETTINGS}
+
+
+def usable_spectrum_settings(material: bpy.types.Material) -> dict[str, Any]:
+    """Return the same with the default in place of what a setting cannot be."""
+    return {parameter.keyword: _usable(parameter, material.get(parameter.keyword)) for parameter in SETTINGS}
+
+
+def _usable(parameter: Parameter, value: Any) -> Any:
+    try:
+        parameter.check(value)
+    except ParameterError:
+        return parameter.default
+    return value
 
 
 def set_spectrum(material: bpy.types.Material, **keywords: Any) -> None:
@@ -133,13 +149,7 @@ def set_spectrum(material: bpy.types.Material, **keywords: Any) -> None:
 
 def material_table(material: bpy.types.Material) -> np.ndarray | None:
     """Return the spectral table that a nested dielectric renders with, or None if the file has lost it."""
-    node = rendered_node(material)
-    tables = node.node_tree.nodes.get(node_group.TABLES_NODE)
-    image = None if tables is None else tables.image
-    if image is None or not len(image.pixels):
-        return None
-    rows = read_rows(image)
-    return rows[min(node.inputs[node_group.TABLE_SOCKET].default_value, len(rows) - 1)]
+    return node_group.table_of(rendered_node(material))
 
 
 def refresh_spectrum(material: bpy.types.Material) -> bool:
@@ -149,6 +159,8 @@ def refresh_spectrum(material: bpy.types.Material) -> bool:
     node = rendered_node(material)
     table = _table(check_keywords(spectrum_settings(material)))
     stale = not node_group.uses_table(node, table)
+    if stale and not (material.is_editable and node.node_tree.is_editable):
+        raise ParameterError("it belongs to a library, where it is to be prepared")
     if stale:
         node_group.set_table(node, table)
     return stale
@@ -157,8 +169,7 @@ def refresh_spectrum(material: bpy.types.Material) -> bool:
 def may_disperse(material: bpy.types.Material) -> bool:
     """Whether a nested dielectric splits light into colours, now or on some frame."""
     socket = dielectric_node(material).inputs["Disperse"]
-    animation = material.node_tree.animation_data
-    return socket.default_value or socket.is_linked or animation is not None
+    return socket.default_value or socket.is_linked or is_animated(material.node_tree, socket)
 
 
 def _table(settings: dict[Parameter, Any]) -> np.ndarray:
@@ -182,7 +193,7 @@ def _set_table(
     table: np.ndarray,
 ) -> None:
     for parameter, value in settings.items():
-        material[parameter.keyword] = value.keyword if isinstance(value, Choice) else value
+        material[parameter.keyword] = _plain(value)
     node_group.set_table(node, table)
 
 
@@ -193,7 +204,7 @@ def dielectric_node(material: bpy.types.Material | None) -> bpy.types.ShaderNode
     node = material.node_tree.nodes.get(GROUP_NAME)
     if node is None or node.type != "GROUP" or node.node_tree is None:
         return None
-    return node if _NAMES.issubset(node.inputs.keys()) and shows_dielectric(material) else None
+    return node if _KINDS <= {(socket.name, socket.type) for socket in node.inputs} and shows_dielectric(material) else None
 
 
 def rendered_node(material: bpy.types.Material) -> bpy.types.ShaderNodeGroup | None:
@@ -221,9 +232,37 @@ def medium_material(obj: bpy.types.Object) -> bpy.types.Material | None:
 
 
 def preset_material(preset: str) -> bpy.types.Material:
-    """Return this file's material of a preset, made on first use."""
+    """Return a material of this file that is as the preset has it, made where there is none or all have been changed."""
     loaded = load_preset(preset)
-    found = bpy.data.materials.get(loaded.name)
-    if found is not None and found.library is None and found.get("nd_preset") and dielectric_node(found) is not None:
-        return found
+    for material in bpy.data.materials:
+        if f"{material.name}.".startswith(f"{loaded.name}.") and is_preset(material, loaded):
+            return material
     return new_material(loaded.name, preset=preset)
+
+
+def is_preset(material: bpy.types.Material, preset: Preset) -> bool:
+    """Tell whether a material of this file is what :func:`new_material` makes of a preset, whatever its name."""
+    node = dielectric_node(material)
+    if node is None or material.library is not None or len(material.node_tree.nodes) > 3:
+        return False
+    values = check_keywords(preset.parameters)
+    settings = {parameter.keyword: _plain(values.get(parameter, parameter.default)) for parameter in SETTINGS}
+    return (
+        not any(socket.is_linked for socket in node.inputs)
+        and not any(curves(material.node_tree.animation_data))
+        and all(_holds(node, parameter, values.get(parameter, parameter.default)) for parameter in SOCKETS)
+        and spectrum_settings(material) == settings
+    )
+
+
+def _holds(node: bpy.types.ShaderNodeGroup, parameter: Parameter, value: Any) -> bool:
+    if parameter.kind == "SHADER":
+        return True
+    found = get_parameter(node, parameter)
+    if isinstance(found, str):
+        return found == _plain(value)
+    return np.array_equal(np.float32(found), np.float32(value))
+
+
+def _plain(value: Any) -> Any:
+    return value.keyword if isinstance(value, Choice) else value

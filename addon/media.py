@@ -6,9 +6,12 @@ A material's priority is the default; an object's own custom property overrides 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from ctypes import c_float
+from typing import Any
 
 import bpy
 
+from .animation import is_animated
 from .materials import dielectric_node, dielectrics, may_disperse, medium_material, preset_material
 from .parameters import BY_KEYWORD, GROUP_NAME, MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
 from .trees import mend_nodes
@@ -78,7 +81,9 @@ def set_priority(obj: bpy.types.Object, priority: int | None) -> None:
     if priority is None:
         obj.pop(PRIORITY_PROPERTY, None)
     else:
-        obj[PRIORITY_PROPERTY] = check_priority(priority)
+        number = check_priority(priority)
+        obj.pop(PRIORITY_PROPERTY, None)  # or it may keep another type
+        obj[PRIORITY_PROPERTY] = number
         obj.id_properties_ui(PRIORITY_PROPERTY).update(
             min=0, max=MAX_PRIORITY, description="Where media overlap, the lowest number wins"
         )
@@ -86,9 +91,26 @@ def set_priority(obj: bpy.types.Object, priority: int | None) -> None:
 
 
 def own_priority(obj: bpy.types.Object) -> int | None:
-    """Return the priority that overrides the material's, or None."""
+    """Return the priority that overrides the material's, or None.
+
+    A custom property may hold anything. What the shader reads of it as a whole number from 0 to 1000 counts, here as
+    there; all else leaves the material's in force.
+    """
     value = obj.get(PRIORITY_PROPERTY)
-    return int(value) if isinstance(value, (int, float)) else None
+    return None if value is None else _priority_in(value)
+
+
+def _priority_in(value: Any) -> int | None:
+    """As is_priority() in osl/medium.h: Cycles gives the shader four numbers in single precision."""
+    if isinstance(value, (int, float)):
+        numbers = (value, value, value, 1.0)
+    elif getattr(value, "typecode", None) in ("i", "f", "d") and len(value) <= 4:
+        numbers = (*value, *(0.0, 0.0, 0.0, 1.0)[len(value) :])
+    else:
+        return None
+    first, second, third, there = (c_float(number).value for number in numbers)
+    counts = there > 0.0 and first == second == third and 0.0 <= first <= MAX_PRIORITY and first == int(first)
+    return int(first) if counts else None
 
 
 def get_priority(obj: bpy.types.Object) -> int:
@@ -97,7 +119,12 @@ def get_priority(obj: bpy.types.Object) -> int:
     if material is None:
         raise ParameterError(f"{obj.name!r} has no nested dielectric material; give it one with assign()")
     own = own_priority(obj)
-    return dielectric_node(material).inputs["Priority"].default_value if own is None else own
+    return material_priority(material) if own is None else own
+
+
+def material_priority(material: bpy.types.Material) -> int:
+    """Return the priority that a nested dielectric gives objects without their own."""
+    return BY_KEYWORD["priority"].bounded(dielectric_node(material).inputs["Priority"].default_value)
 
 
 def all_objects(scene: bpy.types.Scene) -> set[bpy.types.Object]:
@@ -137,38 +164,87 @@ def winning_order(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]
 def move_priority(scene: bpy.types.Scene, obj: bpy.types.Object, step: int) -> bool:
     """Move an object one place up (-1) or down (+1) in the winning order; False if it is at the end already.
 
-    An object that shares its priority with others is parted from them; one that has its own changes places with the
-    next level.
+    An object that shares its priority with others is parted from them; one that has its own passes the next level. The
+    object gets a free number next to that level. Where there is none, levels make room by one number each, those of a
+    material whose objects all rely on it in the material. Raises :class:`ParameterError` if that cannot be done.
     """
+    objects = media(scene)
     levels: dict[int, list[bpy.types.Object]] = {}
-    for medium in media(scene):
-        levels.setdefault(get_priority(medium), []).append(medium)
+    for medium in objects:
+        if medium != obj:
+            levels.setdefault(get_priority(medium), []).append(medium)
     numbers = sorted(levels)
     priority = get_priority(obj)
-    place = numbers.index(priority)
-    if len(levels[priority]) > 1:
-        levels[priority].remove(obj)
-        order = [levels[number] for number in numbers]
-        order.insert(place if step < 0 else place + 1, [obj])
-        _renumber(order)
-        return True
-    other = place + step
-    if not 0 <= other < len(numbers):
+    place = sum(number < priority for number in numbers)
+    if priority in levels:
+        place += step > 0
+    elif not 0 <= place + min(step, 0) < len(numbers):
         return False
-    for medium in levels[numbers[other]]:
-        set_priority(medium, priority)
-    set_priority(obj, numbers[other])
+    else:
+        place += step
+    if not obj.is_editable:
+        raise ParameterError(f"{obj.name!r} belongs to a library; make it local")
+    relying = _relying_on_materials(objects, obj)
+    ways = []
+    for number, shifts in _places_between(numbers, place, step):
+        writes = [(owner, level + by) for level, by in shifts.items() for owner in _owners(levels[level], relying)]
+        if all(owner.is_editable for owner, _ in writes):
+            ways.append((number, writes))
+    if not ways:
+        raise ParameterError(
+            f"{obj.name!r} finds no free number from 0 to {MAX_PRIORITY} there; "
+            "give media that need not differ equal priorities, or make those local that belong to a library"
+        )
+    number, writes = min(ways, key=lambda way: len(way[1]))
+    for owner, other in writes:
+        if isinstance(owner, bpy.types.Material):
+            dielectric_node(owner).inputs["Priority"].default_value = other
+        else:
+            set_priority(owner, other)
+    set_priority(obj, number)
     return True
 
 
-def _renumber(order: list[list[bpy.types.Object]]) -> None:
-    """Number levels upwards, keeping the numbers in use as far as the order and the highest number allow."""
-    numbers: list[int] = []
-    for level in order:
-        numbers.append(max(numbers[-1] + 1 if numbers else 0, min(get_priority(obj) for obj in level)))
-    if numbers[-1] > MAX_PRIORITY:
-        numbers = list(range(len(order)))
-    for level, number in zip(order, numbers):
-        for obj in level:
-            if get_priority(obj) != number:
-                set_priority(obj, number)
+def _places_between(numbers: list[int], place: int, step: int) -> list[tuple[int, dict[int, int]]]:
+    """Ways to a number before ``numbers[place]`` and behind the one before: the number, and how far levels go for it.
+
+    A free one next to the level that is passed, or that of a level which makes room with those that stand in its way.
+    """
+    before = numbers[place - 1] if place else -1
+    behind = numbers[place] if place < len(numbers) else MAX_PRIORITY + 1
+    if behind - before > 1:
+        return [(behind - 1 if step < 0 else before + 1, {})]
+    ways = []
+    for number, shift, run in ((behind, 1, numbers[place:]), (before, -1, numbers[:place][::-1])):
+        moved = {level: shift for index, level in enumerate(run) if level == number + index * shift}
+        if all(0 <= each <= MAX_PRIORITY for each in (number, *(level + shift for level in moved))):
+            ways.append((number, moved))
+    return ways
+
+
+def _relying_on_materials(objects: list[bpy.types.Object], moved: bpy.types.Object) -> set[bpy.types.Material]:
+    """Materials whose priority may change in place of that of objects: it concerns none but those of the scene that rely
+    on it, and no other dielectric of theirs.
+    """
+    here = {obj for obj in objects if obj != moved}
+    found = {medium_material(obj) for obj in here if own_priority(obj) is None}
+    for other in bpy.data.objects:
+        for _, material in dielectrics(other):
+            depends = other != moved and own_priority(other) is None
+            if depends and (other not in here or medium_material(other) != material):
+                found.discard(material)
+    return {material for material in found if material.is_editable and not _is_moved(material)}
+
+
+def _is_moved(material: bpy.types.Material) -> bool:
+    """Whether a keyframe, a driver or a link sets the material's priority."""
+    socket = dielectric_node(material).inputs["Priority"]
+    return socket.is_linked or is_animated(material.node_tree, socket)
+
+
+def _owners(level: list[bpy.types.Object], relying: set[bpy.types.Material]) -> list[bpy.types.ID]:
+    """What is to get another number for all objects of a level to have it."""
+    owners = [
+        medium_material(obj) if own_priority(obj) is None and medium_material(obj) in relying else obj for obj in level
+    ]
+    return list(dict.fromkeys(owners))

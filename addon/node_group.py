@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import tempfile
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from math import e
 from pathlib import Path
 
@@ -16,9 +16,9 @@ from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
 from .contacts import FACES, PROBE
 from .dispersion import mean_cauchy_distances
 from .identity import NO_SCENE, SCENE_PROPERTY
-from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS, Parameter
+from .parameters import BY_KEYWORD, GROUP_NAME, LARGEST, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS, Parameter
 from .shader_source import inlined_source
-from .spectral_images import TABLES, digest, ensure_row
+from .spectral_images import ensure_row, holds, read_rows
 
 SHADER_FILE = "nested_dielectric.osl"
 COORDINATE_FILE = "spectral_coordinate.osl"
@@ -47,6 +47,9 @@ MATERIAL_VERSION = 3
 FRONT_IOR_VERSION = 2
 """The first whose shader knows both ways in which Cycles' closures take an index."""
 
+DAMAGED = 0
+"""Version of a group that nobody can tell by its number, its nodes or its sockets any more."""
+
 VERSION_PROPERTY = "nd_version"
 SOURCE_HASH = "nd_source"
 """What groups of version 1 carry instead of a number."""
@@ -61,6 +64,8 @@ LAMPS_OUTPUT = "Lamps"
 """Outputs of the group of the scene's lamps: one that was drawn, as osl/light.osl has it, a weak emission, and how
 many lamps there are.
 """
+
+_LIGHTS_OUTPUTS = LAMP_OUTPUTS | {EMITTER_OUTPUT: "SHADER", LAMPS_OUTPUT: "INT"}
 
 ANALYSED = "nd_analysed"
 """Custom property of a scene whose media are kept analysed: what holds of its analysis, :class:`Validity`."""
@@ -83,14 +88,19 @@ BY_OBJECT = 5
 
 FACE_ATTRIBUTE = "nd_outside"
 OFFSET_GROUP = "Nested Dielectric Offset"
+OFFSET_ATTRIBUTE = "nd_offset"
+"""Of a mesh's points: by how much the modifier with that group moves them, in the object's own space."""
+
 NEIGHBOUR_VALUES = ("IOR", "Transmittance", "Transmittance Depth")
 OBJECT_PROPERTIES = ("nd_outside", "nd_outside_transmittance")
 """Where faces and objects keep what a scene's analysis tells of them, four floats to an object's property."""
 
 TABLE_SOCKET = "Spectral Table"
 MEANS_SOCKET = "Spectral Table Means"
+SHADER_NODE = "Nested Dielectric Shader"
 TABLES_NODE = "Spectral Tables"
 COORDINATE_NODE = "Spectral Coordinate"
+ROW_OUTPUT = "Row"
 DISPERSER_NODE = "Cycles Dispersion"
 
 LEAST_PREVIEW_IOR = 1.2
@@ -180,11 +190,50 @@ def find_group() -> bpy.types.NodeTree | None:
 
 
 def group_version(tree: bpy.types.NodeTree | None) -> int | None:
-    """Return which version of the material a group is, or None if it is another group."""
+    """Return which version of the material a group is, :data:`DAMAGED` if others have taken from it what it needs, or
+    None if it is another group.
+    """
     if tree is None or tree.bl_idname != "ShaderNodeTree":
         return None
     version = tree.get(VERSION_PROPERTY, 1 if SOURCE_HASH in tree else None)
-    return version if isinstance(version, int) else None
+    if version == MATERIAL_VERSION:
+        return version if _is_whole(tree) else DAMAGED
+    if isinstance(version, int) and version > DAMAGED:
+        return version
+    return None if version is None and SHADER_NODE not in tree.nodes else DAMAGED
+
+
+def _is_whole(tree: bpy.types.NodeTree) -> bool:
+    """Whether a group has the nodes and sockets that Python looks for in it, and its shaders."""
+    kinds = {
+        SHADER_NODE: "SCRIPT",
+        COORDINATE_NODE: "SCRIPT",
+        TABLES_NODE: "TEX_IMAGE",
+        LIGHTS_NAME: "GROUP",
+        DISPERSER_NODE: "BSDF_PRINCIPLED",
+    }
+    for name, kind in kinds.items():
+        node = tree.nodes.get(name)
+        if node is None or node.type != kind:
+            return False
+        if kind == "SCRIPT" and (node.mode != "INTERNAL" or not node.bytecode_hash):
+            return False
+    if tree.nodes[LIGHTS_NAME].node_tree is None:
+        return False
+    sockets = {
+        item.name: item.socket_type
+        for item in tree.interface.items_tree
+        if item.item_type == "SOCKET" and item.in_out == "INPUT"
+    }
+    return all(sockets.get(name) == kind for name, kind in _input_types().items())
+
+
+@cache
+def _input_types() -> dict[str, str]:
+    kinds = {parameter.name: parameter.kind for parameter in SOCKETS}
+    kinds |= {name: kind for name, (_, kind, *_) in _ANALYSIS_SOCKETS.items()}
+    kinds |= {TABLE_SOCKET: "INT", MEANS_SOCKET: "VECTOR"}
+    return {name: _SOCKET_TYPES[kind] for name, kind in kinds.items()}
 
 
 @dataclass(frozen=True)
@@ -215,9 +264,37 @@ def has_analysis(node: bpy.types.ShaderNodeGroup) -> bool:
     return all(name in node.inputs for name in _ANALYSIS_SOCKETS)
 
 
+def is_offset_group(tree: bpy.types.NodeTree | None) -> bool:
+    """Tell whether a group does nothing but move points by :data:`OFFSET_ATTRIBUTE`, whatever its name."""
+    if tree is None or tree.bl_idname != "GeometryNodeTree" or len(tree.nodes) != 4 or len(tree.links) != 3:
+        return False
+    nodes = {node.bl_idname: node for node in tree.nodes if not node.mute}
+    attribute, moved = (nodes.get(kind) for kind in ("GeometryNodeInputNamedAttribute", "GeometryNodeSetPosition"))
+    if attribute is None or moved is None or attribute.inputs["Name"].default_value != OFFSET_ATTRIBUTE:
+        return False
+    ways = {(link.from_node.bl_idname, link.to_node.bl_idname, link.to_socket.name) for link in tree.links}
+    return attribute.data_type == "FLOAT_VECTOR" and ways == {
+        ("NodeGroupInput", moved.bl_idname, "Geometry"),
+        (attribute.bl_idname, moved.bl_idname, "Offset"),
+        (moved.bl_idname, "NodeGroupOutput", "Geometry"),
+    }
+
+
 def find_lights() -> bpy.types.NodeTree | None:
     """Return this file's group of the scene's lamps, or None if there is none yet."""
-    return next((tree for tree in bpy.data.node_groups if tree.name == LIGHTS_NAME and tree.library is None), None)
+    found = [tree for tree in bpy.data.node_groups if tree.library is None and _lists_lamps(tree)]
+    return next((tree for tree in found if tree.name == LIGHTS_NAME), found[0] if found else None)
+
+
+def _lists_lamps(tree: bpy.types.NodeTree) -> bool:
+    """Whether a group is one of the scene's lamps, whatever its name."""
+    return (
+        tree.bl_idname == "ShaderNodeTree"
+        and all(
+            getattr(tree.interface.items_tree.get(name), "socket_type", "") == _SOCKET_TYPES[kind]
+            for name, kind in _LIGHTS_OUTPUTS.items()
+        )
+    )
 
 
 def ensure_lights() -> bpy.types.NodeTree:
@@ -227,7 +304,7 @@ def ensure_lights() -> bpy.types.NodeTree:
         tree = bpy.data.node_groups.new(LIGHTS_NAME, "ShaderNodeTree")
         tree[LIGHTS_VERSION_PROPERTY] = MATERIAL_VERSION
         tree.description = "Lights that direct refraction and direct reflection carry; made by Prepare"
-        for name, kind in (LAMP_OUTPUTS | {EMITTER_OUTPUT: "SHADER", LAMPS_OUTPUT: "INT"}).items():
+        for name, kind in _LIGHTS_OUTPUTS.items():
             tree.interface.new_socket(name, in_out="OUTPUT", socket_type=_SOCKET_TYPES[kind])
         tree.nodes.new("NodeGroupOutput")
     return tree
@@ -245,13 +322,22 @@ def uses_table(node: bpy.types.ShaderNodeGroup, table: np.ndarray) -> bool:
     """Whether a material's group node uses this very spectral table."""
     image = node.node_tree.nodes[TABLES_NODE].image
     row = node.inputs[TABLE_SOCKET].default_value
-    means = node.inputs[MEANS_SOCKET].default_value
+    count = node.node_tree.nodes[COORDINATE_NODE].inputs["Tables"].default_value
+    means = np.float32(mean_cauchy_distances(table))
     return (
-        image is not None
-        and row < len(image[TABLES])
-        and image[TABLES][row] == digest(table)
-        and np.allclose(means, mean_cauchy_distances(table), rtol=1e-5)
+        holds(image, row, table)
+        and count == image.size[1]
+        and np.array_equal(np.float32(node.inputs[MEANS_SOCKET].default_value), means)
     )
+
+
+def table_of(node: bpy.types.ShaderNodeGroup) -> np.ndarray | None:
+    """Return the spectral table that a material's group node uses, or None if its file has lost it."""
+    holder = node.node_tree.nodes.get(TABLES_NODE)
+    rows = read_rows(getattr(holder, "image", None))
+    if rows is None or TABLE_SOCKET not in node.inputs:
+        return None
+    return rows[min(max(node.inputs[TABLE_SOCKET].default_value, 0), len(rows) - 1)]
 
 
 def set_table(node: bpy.types.ShaderNodeGroup, table: np.ndarray) -> None:
@@ -382,7 +468,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     }
     script = add_script(
         tree,
-        "Nested Dielectric Shader",
+        SHADER_NODE,
         scripts[SHADER_FILE],
         kinds,
         {"BSDF": "SHADER", "Running": "FLOAT"}
@@ -408,7 +494,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     links.new(front_ior, script.inputs["FrontIOR"])
     table = inputs.outputs[TABLE_SOCKET]
     tables = _spectral_tables(tree, table, scripts[COORDINATE_FILE])
-    links.new(table, script.inputs["Table"])
+    links.new(tree.nodes[COORDINATE_NODE].outputs[ROW_OUTPUT], script.inputs["Table"])
     links.new(inputs.outputs[MEANS_SOCKET], script.inputs["TableMeans"])
     links.new(tables.outputs["Color"], script.inputs["Weight"])
     links.new(tables.outputs["Alpha"], script.inputs["Wavelength"])
@@ -471,7 +557,7 @@ def _spectral_tables(
         COORDINATE_NODE,
         script,
         {"Table": "INT", "Tables": "INT", "Shutter": "COLOR"},
-        {"Coordinate": "VECTOR"},
+        {"Coordinate": "VECTOR", ROW_OUTPUT: "INT"},
     )
     links.new(table, coordinate.inputs["Table"])
     links.new(shutter.outputs["Color"], coordinate.inputs["Shutter"])
@@ -572,6 +658,23 @@ def math_node(tree: bpy.types.NodeTree, operation: str, *operands: bpy.types.Nod
     return node.outputs[0]
 
 
+def _bounded(
+    tree: bpy.types.NodeTree,
+    source: bpy.types.NodeSocket,
+    number: bpy.types.NodeSocket,
+    limits: tuple[float, float, float],
+) -> bpy.types.NodeSocket:
+    """A number within limits, or where `number` is none the default, as osl/bounds.h has it.
+
+    Minimum and Maximum whose first operand is a constant return it for NaN; no other node tells NaN reliably.
+    """
+    math = partial(math_node, tree)
+    low, high, default = limits
+    usable = math("LESS_THAN", math("ABSOLUTE", math("MAXIMUM", -LARGEST, number)), LARGEST)
+    within = math("MINIMUM", high, math("MAXIMUM", low, source))
+    return math("ADD", math("MULTIPLY", within, usable), math("MULTIPLY", default, math("SUBTRACT", 1.0, usable)))
+
+
 def _mix(
     tree: bpy.types.NodeTree, factor: bpy.types.NodeSocket, first: bpy.types.NodeSocket, second: bpy.types.NodeSocket
 ) -> bpy.types.ShaderNodeMixShader:
@@ -608,14 +711,20 @@ def _absorption_coefficients(
 ) -> tuple[bpy.types.NodeSocket, bpy.types.NodeSocket]:
     """What the medium absorbs per length, and whether it absorbs at all (0 or 1)."""
     math = partial(math_node, tree)
-    channels = tree.nodes.new("ShaderNodeSeparateColor")
-    tree.links.new(inputs.outputs["Transmittance"], channels.inputs[0])
+    separate = tree.nodes.new("ShaderNodeSeparateColor")
+    tree.links.new(inputs.outputs["Transmittance"], separate.inputs[0])
+    total = math("ADD", math("ADD", separate.outputs[0], separate.outputs[1]), separate.outputs[2])
+    low, high, default = BY_KEYWORD["transmittance"].limits
+    channels = [
+        _bounded(tree, channel, total, (low, high, own)) for channel, own in zip(separate.outputs, default)
+    ]
     depth = inputs.outputs["Transmittance Depth"]
+    depth = _bounded(tree, depth, depth, BY_KEYWORD["transmittance_depth"].limits)
     coefficients = tree.nodes.new("ShaderNodeCombineXYZ")
-    for channel, coefficient in zip(channels.outputs, coefficients.inputs):
+    for channel, coefficient in zip(channels, coefficients.inputs):
         decay = math("MULTIPLY", math("LOGARITHM", math("MAXIMUM", channel, 1e-6), e), -1.0)
         tree.links.new(math("DIVIDE", decay, depth), coefficient)
-    least = math("MINIMUM", math("MINIMUM", channels.outputs[0], channels.outputs[1]), channels.outputs[2])
+    least = math("MINIMUM", math("MINIMUM", channels[0], channels[1]), channels[2])
     absorbs = math("MULTIPLY", math("LESS_THAN", least, 1.0), math("GREATER_THAN", depth, 0.0))
     return coefficients.outputs[0], absorbs
 

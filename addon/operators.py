@@ -17,7 +17,7 @@ from .materials import (
     rendered_node,
     set_parameter,
     set_spectrum,
-    spectrum_settings,
+    usable_spectrum_settings,
 )
 from .parameters import BY_KEYWORD, DISPERSION_MODELS, ParameterError, check_keywords
 from .passes import add_passes
@@ -127,6 +127,7 @@ class AssignPreset(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         objects = _targets(context)
+        before = set(bpy.data.materials)
         try:
             for obj in objects:
                 material = media.assign(obj, self.preset)
@@ -134,6 +135,9 @@ class AssignPreset(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self.report({"INFO"}, f"{material.name} assigned to {', '.join(obj.name for obj in objects)}")
+        name = load_preset(self.preset).name
+        if material not in before and material.name != name:
+            self.report({"INFO"}, f"Material {name!r} is not as the preset has it, so {material.name!r} was made")
         return {"FINISHED"}
 
 
@@ -327,7 +331,7 @@ class Spectrum(_MaterialOperator):
         """Take from the material what was not given; a file that was given alone is the distribution."""
         given = self.properties.is_property_set
         settings = {
-            parameter.keyword: value for parameter, value in check_keywords(spectrum_settings(material)).items()
+            parameter.keyword: value for parameter, value in check_keywords(usable_spectrum_settings(material)).items()
         }
         if not given("distribution"):
             distribution = settings["spectral_distribution"]

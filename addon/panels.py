@@ -18,7 +18,7 @@ from .materials import (
     medium_material,
     parameter_socket,
     rendered_node,
-    spectrum_settings,
+    usable_spectrum_settings,
 )
 from .media import get_priority, media, own_priority, winning_order
 from .operators import (
@@ -132,7 +132,9 @@ def draw_priority(layout: bpy.types.UILayout, obj: bpy.types.Object, text: str =
     else:
         value = layout.row(align=True)
         value.active = False
-        value.label(text=f"{text} {get_priority(obj)}", icon="MATERIAL")
+        odd = PRIORITY_PROPERTY in obj
+        value.alert = odd
+        value.label(text=f"{text} {get_priority(obj)}", icon="ERROR" if odd else "MATERIAL")
     toggle = layout.operator(PriorityOwn.bl_idname, text="", icon="PINNED" if own else "UNPINNED", depress=own)
     toggle.name = obj.name
 
@@ -292,7 +294,7 @@ def draw_value(layout: bpy.types.UILayout, name: str, value: str) -> None:
 def draw_spectrum(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """The active medium's spectral table: its picture, what it was baked from, and the button to bake another."""
     material = active_medium(context)
-    settings = spectrum_settings(material)
+    settings = usable_spectrum_settings(material)
     table = material_table(material)
     if table is not None:
         layout.template_icon(icon_value=picture(table), scale=6.0)

@@ -10,7 +10,7 @@ sockets.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 from . import spectra
@@ -23,6 +23,9 @@ PRIORITY_PROPERTY = "nd_priority"
 """Custom property of an object that overrides the priority of its material."""
 
 MAX_PRIORITY = 1000
+
+LARGEST = 3.4e38
+"""As in osl/bounds.h: what is not below is infinite to single precision, or nearly."""
 
 UNLIMITED_REFLECTIONS = 1024
 """As in osl/nested_dielectric.osl: from here on Cycles' own limits are the lower ones."""
@@ -66,10 +69,37 @@ class Parameter:
         """Return ``value`` as the type the parameter holds; :class:`ParameterError` if it cannot hold it."""
         return _CHECKS[self.kind](self, value)
 
+    def bounded(self, value: Any) -> Any:
+        """Return what a socket's value counts as, as osl/bounds.h has it: numbers within the limits, and in place of what is
+        none the default. Values of parameters without limits stay as they are.
+        """
+        if self.limits is None:
+            return value
+        low, high, default = self.limits
+        if self.kind not in ("COLOR", "VECTOR"):
+            return min(max(value, low), high) if is_number(value) else default
+        first, alpha = tuple(value)[: len(default)], tuple(value)[len(default) :]
+        return (*((min(max(each, low), high) for each in first) if is_number(sum(first)) else default), *alpha)
+
+    @property
+    def limits(self) -> tuple[float, float, Any] | None:
+        """Least, most and default of the socket; None where it takes no numbers, or any."""
+        if self.kind == "INDEX":
+            words = [choice.keyword for choice in self.choices]
+            return 0, len(words) - 1, words.index(self.default)
+        return None if self.minimum is None else (self.minimum, self.maximum, self.default)
+
+
+def is_number(value: float) -> bool:
+    """Tell NaN and infinity from all else, as osl/bounds.h does."""
+    return abs(value) < LARGEST
+
 
 def _number(parameter: Parameter, value: Any) -> float:
     try:
         number = float(value)
+    except OverflowError:
+        number = inf
     except (TypeError, ValueError):
         raise ParameterError(f"{parameter.keyword}={value!r}: a number is needed") from None
     if not isfinite(number):
@@ -88,7 +118,7 @@ def _integer(parameter: Parameter, value: Any) -> int:
 
 
 def _boolean(parameter: Parameter, value: Any) -> bool:
-    if value in (0, 1):
+    if isinstance(value, (bool, int, float)) and value in (0, 1):
         return bool(value)
     raise ParameterError(f"{parameter.keyword}={value!r}: True or False is needed")
 
@@ -105,7 +135,7 @@ def _triple(parameter: Parameter, value: Any) -> tuple[float, float, float]:
 
 def _choice(parameter: Parameter, value: Any) -> Choice:
     for choice in parameter.choices:
-        if value == choice.keyword:
+        if isinstance(value, str) and value == choice.keyword:
             return choice
     words = ", ".join(choice.keyword for choice in parameter.choices)
     raise ParameterError(f"{parameter.keyword}={value!r}: one of {words} is needed")
@@ -689,6 +719,7 @@ PARAMETERS: tuple[Parameter, ...] = (
 )
 
 BY_KEYWORD = {parameter.keyword: parameter for parameter in PARAMETERS}
+BY_NAME = {parameter.name: parameter for parameter in PARAMETERS}
 
 SOCKETS = tuple(parameter for parameter in PARAMETERS if parameter.panel != SPECTRUM_PANEL)
 """Parameters that are sockets of the node group."""
@@ -717,6 +748,20 @@ def check_keywords(keywords: dict[str, Any]) -> dict[Parameter, Any]:
         parameter = BY_KEYWORD[keyword]
         checked[parameter] = parameter.check(value)
     return checked
+
+
+def osl_limits() -> str:
+    """The limits and defaults of sockets as macros of OSL: ``#define IOR_LIMITS 0.01, 100.0, 1.33``."""
+    lines = []
+    for parameter in SOCKETS:
+        if parameter.limits is not None:
+            limits = ", ".join(_osl(parameter, limit) for limit in parameter.limits)
+            lines.append(f"#define {parameter.keyword.upper()}_LIMITS {limits}\n")
+    return "".join(lines)
+
+
+def _osl(parameter: Parameter, value: float | tuple[float, ...]) -> str:
+    return f"{parameter.kind.lower()}{value}" if isinstance(value, tuple) else repr(value)
 
 
 def _range(parameter: Parameter) -> str:

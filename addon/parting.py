@@ -14,10 +14,7 @@ import numpy as np
 from .analysis import Coincidence, coincidences, is_offset, triangles_of
 from .checks import Problem
 from .meshes import is_closed, same_places
-from .node_group import OFFSET_GROUP
-
-OFFSET_ATTRIBUTE = "nd_offset"
-"""Of a mesh's points: by how much the modifier moves them, in the object's own space."""
+from .node_group import OFFSET_ATTRIBUTE, OFFSET_GROUP, is_offset_group
 
 PARTING = 1e-4
 """Distance between parted faces, in diagonals of the weaker object: ten times what counts as the same place."""
@@ -98,10 +95,15 @@ def _move(found: Coincidence, distance: float) -> None:
         world = world[same_places(vertices)]  # both sides of a seam
     local = world @ np.linalg.inv(found.matrix[:3, :3]).T
     attribute = mesh.attributes.get(OFFSET_ATTRIBUTE)
+    if attribute is not None and (attribute.data_type, attribute.domain) != ("FLOAT_VECTOR", "POINT"):
+        mesh.attributes.remove(attribute)
+        attribute = None
     if attribute is None:
         attribute = mesh.attributes.new(OFFSET_ATTRIBUTE, "FLOAT_VECTOR", "POINT")
     before = np.zeros(local.size, dtype=np.float32)
-    attribute.data.foreach_get("vector", before)
+    if any(map(is_offset, found.obj.modifiers)):
+        attribute.data.foreach_get("vector", before)
+        before[~np.isfinite(before)] = 0.0
     attribute.data.foreach_set("vector", before + local.reshape(-1).astype(np.float32))
     if not any(map(is_offset, found.obj.modifiers)):
         found.obj.modifiers.new(OFFSET_GROUP, "NODES").node_group = _ensure_group()
@@ -109,9 +111,9 @@ def _move(found: Coincidence, distance: float) -> None:
 
 
 def _ensure_group() -> bpy.types.NodeTree:
-    tree = bpy.data.node_groups.get(OFFSET_GROUP)
-    if tree is not None and tree.library is None:
-        return tree
+    for found in bpy.data.node_groups:
+        if found.library is None and is_offset_group(found):
+            return found
     tree = bpy.data.node_groups.new(OFFSET_GROUP, "GeometryNodeTree")
     tree.is_modifier = True
     tree.description = "Moves points off faces of another medium in the same place"

@@ -245,7 +245,12 @@ def _path(scene: bpy.types.Scene, layer: str) -> tuple[str, str]:
 
 
 def _is_passes(tree: bpy.types.NodeTree | None) -> bool:
-    return tree is not None and MARK in tree
+    """Whether a group is that of this extension, with the sockets it was made with."""
+    if tree is None or tree.bl_idname != "CompositorNodeTree" or MARK not in tree:
+        return False
+    sockets = {(item.in_out, item.name) for item in tree.interface.items_tree if item.item_type == "SOCKET"}
+    inputs, outputs = (("INPUT", (*_SOURCES, _MEDIA_LIGHT)), ("OUTPUT", PASSES))
+    return all((in_out, name) in sockets for in_out, names in (inputs, outputs) for name in names)
 
 
 def _ensure_group() -> bpy.types.NodeTree:

@@ -52,7 +52,8 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     """Set what a scene needs to render nested dielectrics, and look for problems with its media.
 
     Cycles on the CPU with Open Shading Language, and enough bounces; where a medium disperses, the motion blur that
-    carries the wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space; the
+    carries the wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space;
+    where none does any more, no motion blur with a shutter of 0; the
     lamps that direct refraction and reflection carry; and what surrounds each medium, so that it need not ask the scene.
     Larger limits stay. A second call changes nothing. Raises
     :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
@@ -74,6 +75,8 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     dispersing = dispersing_materials(scene)
     if dispersing:
         _ensure_random_time(changes, scene)
+    else:
+        _end_random_time(changes, scene)
     for material in dispersing:
         try:
             if refresh_spectrum(material):
@@ -110,3 +113,11 @@ def _ensure_random_time(changes: list[str], scene: bpy.types.Scene) -> None:
             point.location[1] = 1.0
         mapping.update()
         changes.append("Shutter Curve: flat")
+
+
+def _end_random_time(changes: list[str], scene: bpy.types.Scene) -> None:
+    """Switch off motion blur that blurs nothing, which only :func:`_ensure_random_time` leaves on."""
+    if scene.render.use_motion_blur and scene.render.motion_blur_shutter == 0.0:
+        shutter = scene.render.bl_rna.properties["motion_blur_shutter"].default
+        _ensure(changes, scene.render, "use_motion_blur", False, "Motion Blur")
+        _ensure(changes, scene.render, "motion_blur_shutter", shutter, "Shutter")

@@ -5,7 +5,12 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from .parameters import osl_limits
+
 OSL_FOLDER = Path(__file__).resolve().parent.parent / "osl"
+
+_LIMITS_FILE = "parameters.h"
+"""A header that is made of the table of parameters."""
 
 _INCLUDE = re.compile(r'^#include "(.+)"\n', re.MULTILINE)
 
@@ -21,6 +26,8 @@ def inlined_source(name: str, folder: Path = OSL_FOLDER) -> str:
         if filename in seen:
             return ""
         seen.add(filename)
+        if filename == _LIMITS_FILE:
+            return osl_limits()
         text = (folder / filename).read_text(encoding="utf-8").replace("#pragma once\n", "")
         return _INCLUDE.sub(lambda match: inline(match.group(1)), text)
 

@@ -12,6 +12,7 @@ from typing import Any
 
 import bpy
 
+from .animation import is_animated
 from .node_group import CYCLES_OUTPUT, PREVIEW_OUTPUT, VOLUME_OUTPUT, group_version
 from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, SOCKETS
 
@@ -182,7 +183,7 @@ def node_problems(material: bpy.types.Material) -> Iterator[tuple[str, str]]:
                 f"a link into {name!r} of {where}, which its neighbours cannot follow",
                 "unlink it; set, keyframe or drive the value itself",
             )
-        elif len(place) > 1 and is_animated(socket):
+        elif len(place) > 1 and is_animated(socket.id_data, socket):
             yield (
                 f"keyframes or a driver of {name!r} in {where}, which its neighbours cannot follow into the group "
                 f"{place[0].name!r}",
@@ -213,34 +214,6 @@ def socket_value(socket: bpy.types.NodeSocket) -> Any:
     """Return the value of a socket as numbers, words and tuples that compare."""
     value = socket.default_value
     return value if isinstance(value, (int, float, str)) else tuple(value)
-
-
-def is_animated(socket: bpy.types.NodeSocket) -> bool:
-    """Whether keyframes or a driver set a socket's value."""
-    tree = socket.id_data
-    for curve in curves(tree.animation_data):
-        try:
-            if tree.path_resolve(curve.data_path.removesuffix(".default_value")) == socket:
-                return True
-        except ValueError:
-            continue  # a path that leads nowhere any more
-    return False
-
-
-def curves(animation: bpy.types.AnimData | None) -> Iterator[bpy.types.FCurve]:
-    """Yield the drivers and keyframes of one data-block, in its action and in strips."""
-    if animation is None:
-        return
-    yield from animation.drivers
-    actions = [(animation.action, animation.action_slot)]
-    actions += [(strip.action, strip.action_slot) for track in animation.nla_tracks for strip in track.strips]
-    for action, slot in actions:
-        if action is None or slot is None:
-            continue
-        for strip in (strip for layer in action.layers for strip in layer.strips):
-            bag = strip.channelbag(slot)
-            if bag is not None:
-                yield from bag.fcurves
 
 
 # Following links ------------------------------------------------------------------------------------------------------
@@ -346,6 +319,6 @@ def _may_absorb(place: Place) -> bool:
     return (
         transmittance is None
         or depth is None
-        or is_animated(transmittance)
+        or is_animated(transmittance.id_data, transmittance)
         or (min(transmittance.default_value[:3]) < 1.0 and depth.default_value > 0.0)
     )

@@ -11,29 +11,29 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import bpy
-import numpy as np
 
 from .analysis import is_analysed
+from .animation import curves
 from .checks import Problem
 from .compatibility import require_blender, takes_front_ior
 from .lights import refresh_lights
 from .live import analyse
 from .materials import dielectric_node, refresh_spectrum
 from .node_group import (
+    DAMAGED,
     FRONT_IOR_VERSION,
     MATERIAL_VERSION,
     OFFSET_GROUP,
-    TABLE_SOCKET,
-    TABLES_NODE,
     arm_dispersion,
     ensure_group,
     find_group,
     group_version,
+    is_offset_group,
     set_table,
+    table_of,
 )
 from .parameters import ParameterError
-from .spectral_images import TABLES, read_rows
-from .trees import curves
+from .spectral_images import TABLES
 
 
 def update_materials() -> tuple[str, ...]:
@@ -55,7 +55,7 @@ def update_materials() -> tuple[str, ...]:
             before = group_version(node.node_tree)
             places, lost = _exchange(node, ensure_group())
             moved.setdefault(node.id_data, {}).update(places)
-            how = "one of several copies" if before == MATERIAL_VERSION else f"version {before}"
+            how = {MATERIAL_VERSION: "one of several copies", DAMAGED: "damaged"}.get(before, f"version {before}")
             changes.append(f"{_owner(node.id_data).name}: was {how}")
             changes += [f"{_owner(node.id_data).name}: {name!r} could not be kept" for name in lost]
         _follow_sockets(moved)
@@ -100,12 +100,15 @@ def version_problems() -> list[Problem]:
             problems.append(Problem(material.name, "was made by a newer version", "install that version of the extension"))
         elif tree in wrong and material.library is not None:
             remedy = f"press Update Materials in {material.library.filepath!r} and save it"
-            problems.append(Problem(material.name, "comes from a file of an older version, which is wrong here", remedy))
+            damaged = group_version(tree) == DAMAGED
+            how = "in which its node group is damaged" if damaged else "of an older version, which is wrong here"
+            problems.append(Problem(material.name, f"comes from a file {how}", remedy))
     return problems
 
 
 def _is_wrong_here(tree: bpy.types.NodeTree) -> bool:
-    return (group_version(tree) or FRONT_IOR_VERSION) < FRONT_IOR_VERSION and bool(takes_front_ior())
+    version = group_version(tree)
+    return version == DAMAGED or (version is not None and version < FRONT_IOR_VERSION and bool(takes_front_ior()))
 
 
 def _arm_groups() -> None:
@@ -154,7 +157,7 @@ def _owner(tree: bpy.types.NodeTree) -> bpy.types.ID:
 def _exchange(node: bpy.types.ShaderNodeGroup, group: bpy.types.NodeTree) -> tuple[dict[str, str], list[str]]:
     """Give a node another group. Return where the paths of its sockets have moved, and the names of what could not stay."""
     links = node.id_data.links
-    table = _table(node)
+    table = table_of(node)
     names = [socket.name for socket in node.inputs]
     values = {socket.name: _value(socket) for socket in node.inputs if hasattr(socket, "default_value")}
     hidden = {socket.name for socket in (*node.inputs, *node.outputs) if socket.hide}
@@ -179,15 +182,6 @@ def _exchange(node: bpy.types.ShaderNodeGroup, group: bpy.types.NodeTree) -> tup
     prefix = f'nodes["{bpy.utils.escape_identifier(node.name)}"].inputs'
     moved = {f"{prefix}[{old}]": f"{prefix}[{places[name]}]" for old, name in enumerate(names) if name in places}
     return {old: new for old, new in moved.items() if old != new}, lost
-
-
-def _table(node: bpy.types.ShaderNodeGroup) -> np.ndarray | None:
-    """The spectral table that a group node uses, or None if its file has lost it."""
-    holder = node.node_tree.nodes.get(TABLES_NODE)
-    if holder is None or holder.image is None or not len(holder.image.pixels) or TABLE_SOCKET not in node.inputs:
-        return None
-    rows = read_rows(holder.image)
-    return rows[min(node.inputs[TABLE_SOCKET].default_value, len(rows) - 1)]
 
 
 def _bake_again(owner: bpy.types.ID) -> list[str]:
@@ -337,7 +331,7 @@ def _merge_offsets() -> list[str]:
     found = [
         tree
         for tree in bpy.data.node_groups
-        if tree.library is None and tree.bl_idname == "GeometryNodeTree" and _plain_name(tree) == OFFSET_GROUP
+        if tree.library is None and is_offset_group(tree) and _plain_name(tree) == OFFSET_GROUP
     ]
     if [tree.name for tree in found] in ([], [OFFSET_GROUP]):
         return []

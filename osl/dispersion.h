@@ -1,6 +1,8 @@
 /* How an index of refraction changes with the wavelength, and what carries a path's wavelength. Wavelengths are in nm. */
 #pragma once
 
+#include "bounds.h"
+
 #define DISPERSION_ABBE 0
 #define DISPERSION_SELLMEIER 1
 #define DISPERSION_JF 2
@@ -35,10 +37,10 @@ struct Index {
   int regular; /* the slope describes it */
 };
 
-/* An index of refraction that Snell's law can use, whatever the artist typed. A comparison with NaN is false. */
+/* An index of refraction that Snell's law can use, whatever a curve comes to. */
 float usable_ior(float ior)
 {
-  return (ior > 1e-3 && ior < 1e3) ? ior : 1.0;
+  return select(1.0, ior, within(ior, 1e-3, 1e3, 1.0));
 }
 
 /* How far a wavelength is from the d line, in the units Cauchy's second term is linear in. */
@@ -84,8 +86,10 @@ Index medium_index(float ior, DispersionCurve d, int splits, float wavelength)
   n.slope = 0.0;
   n.regular = 1;
   if (splits) {
-    n.slope = (ior_at(ior, d, LINE_F) - ior_at(ior, d, LINE_C)) / (cauchy_distance(LINE_F) - cauchy_distance(LINE_C));
-    /* No glass is further off at the ends; what is not a number is not close either. */
+    float spread = ior_at(ior, d, LINE_F) - ior_at(ior, d, LINE_C);
+    float slope = spread / (cauchy_distance(LINE_F) - cauchy_distance(LINE_C));
+    n.slope = select(0.0, slope, is_number(slope));
+    /* No glass is further off at the ends. */
     n.regular = abs(ior_at(ior, d, SHORTEST) - n.white - n.slope * cauchy_distance(SHORTEST)) < 0.05 &&
                 abs(ior_at(ior, d, LONGEST) - n.white - n.slope * cauchy_distance(LONGEST)) < 0.05;
     if (wavelength > 0.0)
@@ -97,7 +101,7 @@ Index medium_index(float ior, DispersionCurve d, int splits, float wavelength)
 /* Ratio of two indices of white light's wavelength with that Cauchy distance. */
 float eta_at(Index from, Index to, float distance)
 {
-  return (to.white + to.slope * distance) / max(from.white + from.slope * distance, 1e-3);
+  return max(to.white + to.slope * distance, 1e-3) / max(from.white + from.slope * distance, 1e-3);
 }
 
 /* The ratio of two indices of white light, and how far it spreads over the spectrum as a number of Abbe's kind: both are

@@ -51,14 +51,14 @@ vector tangent_axis(vector tangent, int source, vector refracted_way)
 {
   if (source == TANGENT_REFRACTION)
     return (dot(refracted_way, refracted_way) > 0.0) ? refracted_way : -I;
-  return (dot(tangent, tangent) > 0.0) ? normalize(tangent) : normalize(transform("object", "world", vector(0.0, 0.0, 1.0)));
+  return has_direction(tangent) ? normalize(tangent) : normalize(transform("object", "world", vector(0.0, 0.0, 1.0)));
 }
 
 /* The artist's tangent, the way of the refracted light along the surface, or a circle around the object's Z axis. */
 vector tangent_along(vector tangent, int source, vector axis)
 {
   vector along = axis;
-  if (source == TANGENT_GIVEN && dot(tangent, tangent) == 0.0)
+  if (source == TANGENT_GIVEN && !has_direction(tangent))
     along = cross(axis, P - transform("object", "world", point(0.0)));
   along -= N * dot(along, N);
   return (dot(along, along) > 1e-12) ? normalize(along) : normalize(dPdu);
@@ -69,10 +69,10 @@ Lobe make_lobe(int distribution, float roughness, float anisotropy, float blur, 
 {
   Lobe lobe;
   lobe.distribution = distribution;
-  anisotropic_alpha(clamp(roughness, 0.0, 1.0), anisotropy, lobe.alpha_x, lobe.alpha_y);
+  anisotropic_alpha(min(roughness, 1.0), anisotropy, lobe.alpha_x, lobe.alpha_y);
   if (anisotropy != 0.0 && blur > 0.0) {
     float mean = sqrt(lobe.alpha_x * lobe.alpha_y);
-    float pole = pow(abs(dot(axis, N)), 1.0 / min(blur, 1.0) - 1.0);
+    float pole = pow(abs(dot(axis, N)), 1.0 / blur - 1.0);
     lobe.alpha_x = mix(lobe.alpha_x, mean, pole);
     lobe.alpha_y = mix(lobe.alpha_y, mean, pole);
   }

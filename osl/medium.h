@@ -8,6 +8,14 @@
 
 #define AIR_PRIORITY 1e9
 
+/* Whether an object's own priority counts: a whole number that the artist may give. Whatever else is stored there leaves
+ * the material's in force, as in own_priority() of addon/media.py. */
+int is_priority(float own[4])
+{
+  float p = own[0];
+  return (own[3] > 0.0) * (own[1] == p) * (own[2] == p) * (floor(p) == p) * within(p, PRIORITY_LIMITS);
+}
+
 /* Material slots an object's dielectric is looked for in when the face that was hit has another material. */
 #define MATERIAL_SLOTS 8
 
@@ -37,9 +45,9 @@ Medium air()
 
 void tint(output Medium m, color transmittance, float transmittance_depth)
 {
-  m.transmittance = clamp(transmittance, color(0.0), color(1.0));
-  m.transmittance_depth = transmittance_depth;
-  m.absorbs = min(m.transmittance[0], min(m.transmittance[1], m.transmittance[2])) < 1.0 && transmittance_depth > 0.0;
+  m.transmittance = bounded(transmittance, TRANSMITTANCE_LIMITS);
+  m.transmittance_depth = bounded(transmittance_depth, TRANSMITTANCE_DEPTH_LIMITS);
+  m.absorbs = min(m.transmittance[0], min(m.transmittance[1], m.transmittance[2])) < 1.0 && m.transmittance_depth > 0.0;
 }
 
 /* Cycles evaluates these RNA paths on the evaluated object, so a neighbour's keyframed or driven socket is read as it
@@ -57,7 +65,7 @@ float shaded_priority(float material_priority)
 {
   float own[4] = {0.0, 0.0, 0.0, 0.0};
   getattribute(OBJECT_PRIORITY, own);
-  return (own[3] > 0.0) ? own[0] : material_priority;
+  return is_priority(own) ? own[0] : material_priority;
 }
 
 /* Any material in the second slot: an object without one needs no look at the face that was hit, and what its material
@@ -85,7 +93,7 @@ float hit_slot(output int slot)
   for (int i = -1; i < MATERIAL_SLOTS; i++) {
     slot = (i < 0) ? min((int)index, MATERIAL_SLOTS - 1) : i;
     if (getmessage("trace", priorities[slot], value) && value[3] > 0.0)
-      return value[0];
+      return bounded(value[0], PRIORITY_LIMITS);
   }
   slot = NO_SLOT;
   return AIR_PRIORITY;
@@ -99,7 +107,7 @@ float hit_priority(output int slot)
   slot = NO_SLOT;
   if (!getmessage("trace", OBJECT_PRIORITY, value))
     return AIR_PRIORITY; /* no material on it asks for the property: not a medium */
-  return (value[3] > 0.0) ? value[0] : hit_slot(slot);
+  return is_priority(value) ? value[0] : hit_slot(slot);
 }
 
 /* Which media's dispersion a surface needs. */
@@ -124,17 +132,17 @@ DispersionCurve hit_dispersion(int slot, int curves)
   if (!d.disperses && curves != CURVES_ALL)
     return d;
   if (getmessage("trace", models[slot], value))
-    d.model = (int)value[0];
+    d.model = bounded((int)value[0], DISPERSION_MODEL_LIMITS);
   if (d.model == DISPERSION_JF && getmessage("trace", spreads[slot], value))
-    d.spread = value[0];
+    d.spread = bounded(value[0], DISPERSION_LIMITS);
   if (curves == CURVES_NONE)
     return d;
   if (d.model == DISPERSION_ABBE && getmessage("trace", numbers[slot], value))
-    d.abbe = value[0];
+    d.abbe = bounded(value[0], ABBE_LIMITS);
   if (d.model == DISPERSION_SELLMEIER && getmessage("trace", strengths[slot], value)) {
-    d.sellmeier_b = vector(value[0], value[1], value[2]);
+    d.sellmeier_b = bounded(vector(value[0], value[1], value[2]), SELLMEIER_B_LIMITS);
     getmessage("trace", resonances[slot], value);
-    d.sellmeier_c = vector(value[0], value[1], value[2]);
+    d.sellmeier_c = bounded(vector(value[0], value[1], value[2]), SELLMEIER_C_LIMITS);
   }
   return d;
 }
@@ -153,7 +161,8 @@ Medium hit_medium(float priority, output int slot, int curves, float wavelength)
     float value[4];
     getmessage("trace", iors[slot], value);
     DispersionCurve d = hit_dispersion(slot, curves);
-    m.ior = medium_index(value[0], d, curves == CURVES_ALL || (curves != CURVES_NONE && d.disperses), wavelength);
+    float ior = bounded(value[0], IOR_LIMITS);
+    m.ior = medium_index(ior, d, curves == CURVES_ALL || (curves != CURVES_NONE && d.disperses), wavelength);
     m.disperses = d.disperses;
     if (getmessage("trace", transmittances[slot], value)) {
       color left = color(value[0], value[1], value[2]);

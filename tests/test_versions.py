@@ -10,9 +10,10 @@ import pytest
 
 import nested_dielectric as nd
 from nested_dielectric import compatibility, node_group, shader_source, versions
+from nested_dielectric.animation import curves
 from nested_dielectric.lights import listed_lamps, update_lights
 from nested_dielectric.materials import material_table
-from nested_dielectric.parting import OFFSET_GROUP
+from nested_dielectric.parting import OFFSET_GROUP, _ensure_group
 from nested_dielectric.spectra import spectral_table
 from released import IORS, NODE, TINT, build_scene
 from scenes import add_box, new_scene, render
@@ -169,7 +170,7 @@ def test_keyframes_and_drivers_follow_sockets_that_moved():
     # The paths as that version would have written them.
     places = {name: place for place, name in enumerate(socket.name for socket in inputs("Glass"))}
     for name in ("Glass", "Water"):
-        for curve in versions.curves(bpy.data.materials[name].node_tree.animation_data):
+        for curve in curves(bpy.data.materials[name].node_tree.animation_data):
             before = int(curve.data_path.partition("inputs[")[2].partition("]")[0])
             curve.data_path = curve.data_path.replace(f"inputs[{before}]", f"inputs[{places[names[before]]}]")
     target = bpy.data.objects["Water"].animation_data.drivers[0].driver.variables[0].targets[0]
@@ -214,7 +215,7 @@ def test_groups_that_part_faces_become_one():
     new_scene()
     for name in ("A", "B"):
         obj = add_box(name, (0, 0, 0), (1, 1, 1))
-        tree = bpy.data.node_groups.new(OFFSET_GROUP, "GeometryNodeTree")
+        tree = _ensure_group().copy() if name == "B" else _ensure_group()
         obj.modifiers.new("Offset", "NODES").node_group = tree
     assert nd.update_materials() == (f"{OFFSET_GROUP}: 2 copies became one",)
     assert [tree.name for tree in bpy.data.node_groups] == [OFFSET_GROUP]
@@ -223,7 +224,8 @@ def test_groups_that_part_faces_become_one():
 
 def test_a_group_that_parts_faces_is_known_again_if_only_a_copy_is_left():
     new_scene()
-    bpy.data.node_groups.new(f"{OFFSET_GROUP}.001", "GeometryNodeTree").use_fake_user = True
+    copy = _ensure_group()
+    copy.name, copy.use_fake_user = f"{OFFSET_GROUP}.001", True
     assert nd.update_materials() == (f"{OFFSET_GROUP}: has its name back",)
     assert [tree.name for tree in bpy.data.node_groups] == [OFFSET_GROUP] and nd.update_materials() == ()
 
