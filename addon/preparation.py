@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from .analysis import Found, analyse
+from .analysis import Found, analyse, last_found
 from .checks import Problem, find_problems
 from .compatibility import achromatic_reason, require_blender
 from .lights import update_lights
@@ -83,7 +83,7 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
         changes += parted
         problems += coincident
         if parted:
-            found = analyse(scene)
+            found = last_found(scene)
         problems += [
             Problem(
                 name,
