@@ -144,7 +144,7 @@ class Found:
     def __str__(self) -> str:
         lines = [f"{name!r} {reason}, so all media ask the scene what surrounds them" for name, reason in self.doubts]
         lines += [
-            f"{what}: {_listed(names)}"
+            f"{what}: {listed(names)}"
             for names, what in (
                 (self.known, "know what surrounds them"),
                 (self.partly, "know what surrounds them except near crossings"),
@@ -156,7 +156,8 @@ class Found:
         return "\n".join(lines)
 
 
-def _listed(names: tuple[str, ...], most: int = 4) -> str:
+def listed(names: tuple[str, ...], most: int = 4) -> str:
+    """Return names for a sentence: the first few, and how many more there are."""
     shown = ", ".join(map(repr, names[:most]))
     return shown if len(names) <= most else f"{shown} and {len(names) - most} more"
 
@@ -285,71 +286,12 @@ def forget_shapes() -> None:
         known.survey = None
 
 
-@dataclass(frozen=True)
-class Coincidence:
-    """Faces of a medium that lie in the same place as others' and are to be moved.
-
-    :param others: names of those, for a sentence.
-    :param rank: number of stronger levels of priority among all that coincide, at least 1.
-    :param size: diagonal of the object's box, scene units.
-    :param reach: its largest coordinate.
-    :param matrix: (4, 4) from the mesh's space to the world's.
-    :param corners: (m, 3) vertices of the triangles.
-    :param normals: (m, 3) in the world, outwards.
-    :param sides: (m,) 1 where they are to be moved along the normals, -1 where against them: a weaker medium's into the
-        stronger one, a stronger one's outwards where only part of a larger face is met.
-    """
-
-    obj: bpy.types.Object
-    others: str
-    rank: int
-    size: float
-    reach: float
-    matrix: np.ndarray
-    corners: np.ndarray
-    normals: np.ndarray
-    sides: np.ndarray
-
-
-def coincidences(scene: bpy.types.Scene) -> list[Coincidence]:
-    """Return what coincides in a scene, as the last analysis in this session found it."""
+def looked_at(scene: bpy.types.Scene) -> tuple[list[tuple[bpy.types.Object, Body]], list[Contact]]:
+    """Return the media of a scene whose exact shape is known, and what the last analysis in this session found of each."""
     survey = _of(scene).survey
     if survey is None:
-        return []
-    rows = survey.bodies
-    among = [{other for other, *_ in contact.coincident} for contact in survey.contacts]
-    moved = {}
-    for index, (row, contact) in enumerate(zip(rows, survey.contacts)):
-        found = []
-        for other, triangles, signs in contact.coincident:
-            if (row.body.priority, index) > (rows[other].body.priority, other):
-                found.append((other, triangles, -signs))
-            elif index not in among[other]:
-                # Part of a larger face of the weaker one's, which cannot be moved alone.
-                found.append((other, triangles, np.ones(len(signs))))
-        if found and row.obj not in moved:
-            moved[row.obj] = (row, found)
-    levels = sorted({rows[other].body.priority for _, found in moved.values() for other, *_ in found})
-    result = []
-    for obj, (row, found) in moved.items():
-        faces = np.concatenate([triangles for _, triangles, _ in found])
-        corners = row.body.solid.triangles[faces]
-        a, b, c = (row.body.solid.vertices[corners[:, i]] @ row.body.matrix[:3, :3].T for i in range(3))
-        normals = np.cross(b - a, c - a) * np.sign(np.linalg.det(row.body.matrix[:3, :3]))
-        result.append(
-            Coincidence(
-                obj,
-                _listed(tuple(rows[other].obj.name for other, *_ in found)),
-                max(sum(level < row.body.priority for level in levels), 1),
-                float(np.linalg.norm(row.box[1] - row.box[0])),
-                float(np.abs(row.box).max()),
-                row.body.matrix,
-                corners,
-                normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30),
-                np.concatenate([sides for *_, sides in found]).astype(float),
-            )
-        )
-    return result
+        return [], []
+    return [(row.obj, row.body) for row in survey.bodies], survey.contacts
 
 
 def last_found(scene: bpy.types.Scene) -> Found | None:

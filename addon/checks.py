@@ -10,8 +10,8 @@ import bpy
 import numpy as np
 from mathutils.bvhtree import BVHTree
 
-from . import meshes
-from .analysis import is_relative, triangles_of
+from . import contacts, meshes
+from .analysis import is_relative, listed, triangles_of
 from .animation import curves
 from .lights import carried_lamps, light_carriers, listed_lamps
 from .materials import dielectric_node, dielectrics, may_disperse, medium_material
@@ -19,6 +19,12 @@ from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, ge
 from .node_group import MATERIAL_SLOTS
 from .parameters import MAX_PRIORITY, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS
 from .trees import node_problems, shows_others_blindly, socket_value
+
+SURFACES = frozenset(("MESH", "CURVE", "SURFACE", "FONT", "META"))
+"""Types of objects that a render shows as a mesh."""
+
+NEAR = 1e-4
+"""By how much to move what rests on something else, in diagonals of its box."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +56,8 @@ def find_problems(scene: bpy.types.Scene) -> list[Problem]:
     """Look at every medium of a scene as it is evaluated now; change nothing."""
     depsgraph = _depsgraph(scene)
     objects = media(scene)
-    shapes = [shape for obj in objects if (shape := _shape(obj, depsgraph)) is not None]
+    evaluated = [obj.evaluated_get(depsgraph) for obj in objects]
+    shapes = [shape for obj in evaluated if (shape := _shape(obj, np.array(obj.matrix_world))) is not None]
     problems = material_problems(scene)
     problems += _kind_problems(depsgraph)
     problems += [problem for obj in objects for problem in _object_problems(obj)]
@@ -59,6 +66,7 @@ def find_problems(scene: bpy.types.Scene) -> list[Problem]:
         problems += _mesh_problems(shape, shapes) + _mixture_problems(shape)
     problems += _overlap_problems(shapes)
     problems += _mask_problems(shapes)
+    problems += _resting_problems(shapes, objects, depsgraph)
     if dispersing_materials(scene):
         problems += _dispersion_problems(scene)
     if objects:
@@ -87,8 +95,7 @@ def material_problems(scene: bpy.types.Scene) -> list[Problem]:
     ]
 
 
-def _shape(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Shape | None:
-    evaluated = obj.evaluated_get(depsgraph)
+def _shape(evaluated: bpy.types.Object, matrix: np.ndarray) -> _Shape | None:
     try:
         mesh = evaluated.to_mesh()
     except RuntimeError:
@@ -101,13 +108,12 @@ def _shape(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> _Shape | No
         mesh.polygons.foreach_get("material_index", slots)
     finally:
         evaluated.to_mesh_clear()
-    matrix = np.array(evaluated.matrix_world, dtype=np.float64)
     world = vertices.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         triangles = triangles[:, ::-1]
     materials = [slot.material.original if slot.material else None for slot in evaluated.material_slots]
     used = (materials[min(slot, len(materials) - 1)] for slot in np.unique(slots)) if materials else ()
-    return _Shape(obj, world, triangles, tuple(each for each in dict.fromkeys(used) if dielectric_node(each)))
+    return _Shape(evaluated.original, world, triangles, tuple(each for each in dict.fromkeys(used) if dielectric_node(each)))
 
 
 def _kind_problems(depsgraph: bpy.types.Depsgraph) -> list[Problem]:
@@ -289,6 +295,43 @@ def _mixture_problems(shape: _Shape) -> list[Problem]:
             if shape.obj.type == "MESH"
             else f"{_CONVERT} and separate them (Edit Mode > Mesh > Separate > By Material)",
         )
+    ]
+
+
+def _resting_problems(
+    shapes: list[_Shape], objects: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph
+) -> list[Problem]:
+    """Media whose faces lie in the same place as those of what is no medium: a ray meets either."""
+    shapes = [shape for shape in shapes if len(shape.triangles) and np.isfinite(shape.vertices).all()]
+    if not shapes:
+        return []
+    low, high = (np.array([end(shape.vertices, axis=0) for shape in shapes]) for end in (np.min, np.max))
+    size = np.linalg.norm(high - low, axis=1)
+    margin = NEAR * size[:, None]
+    among = set(objects)
+    names: dict[int, dict[str, None]] = {}
+    for instance in depsgraph.object_instances:
+        obj = instance.object
+        if obj.type not in SURFACES or obj.original in among or obj.original.hide_render:
+            continue
+        matrix = np.array(instance.matrix_world)
+        box = np.array([tuple(corner) for corner in obj.bound_box]) @ matrix[:3, :3].T + matrix[:3, 3]
+        meets = (low - margin <= box.max(axis=0)) & (high + margin >= box.min(axis=0))
+        near = np.flatnonzero(meets.all(axis=1))
+        foreign = _shape(obj, matrix) if len(near) else None
+        if foreign is None or not np.isfinite(foreign.vertices).all():
+            continue
+        solids = [contacts.Solid(shapes[index].vertices, shapes[index].triangles) for index in near]
+        for index in contacts.resting(solids, contacts.Solid(foreign.vertices, foreign.triangles)):
+            names.setdefault(int(near[index]), {})[obj.name] = None
+    return [
+        Problem(
+            shapes[index].obj.name,
+            f"has faces in the same place as {listed(tuple(others))}, which is no medium",
+            f"move them {NEAR * size[index]:.2g} apart, which leaves air between them, or let them overlap as much, "
+            "which leaves none",
+        )
+        for index, others in sorted(names.items())
     ]
 
 

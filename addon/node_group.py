@@ -89,7 +89,12 @@ BY_OBJECT = 5
 FACE_ATTRIBUTE = "nd_outside"
 OFFSET_GROUP = "Nested Dielectric Offset"
 OFFSET_ATTRIBUTE = "nd_offset"
-"""Of a mesh's points: by how much the modifier with that group moves them, in the object's own space."""
+"""Of a mesh's points: by how much the modifier with that group moves them, in the object's own space. Objects that share the
+mesh and are moved by something else have one of the same name and a number.
+"""
+
+ATTRIBUTE_SOCKET = "Attribute"
+"""Input of that modifier: the name of the attribute; empty stands for OFFSET_ATTRIBUTE."""
 
 NEIGHBOUR_VALUES = ("IOR", "Transmittance", "Transmittance Depth")
 OBJECT_PROPERTIES = ("nd_outside", "nd_outside_transmittance")
@@ -265,19 +270,33 @@ def has_analysis(node: bpy.types.ShaderNodeGroup) -> bool:
 
 
 def is_offset_group(tree: bpy.types.NodeTree | None) -> bool:
-    """Tell whether a group does nothing but move points by :data:`OFFSET_ATTRIBUTE`, whatever its name."""
-    if tree is None or tree.bl_idname != "GeometryNodeTree" or len(tree.nodes) != 4 or len(tree.links) != 3:
+    """Tell whether a group does nothing but move points by an attribute that its modifier names, or in files of older
+    versions by :data:`OFFSET_ATTRIBUTE`, whatever its name.
+    """
+    if tree is None or tree.bl_idname != "GeometryNodeTree":
         return False
     nodes = {node.bl_idname: node for node in tree.nodes if not node.mute}
-    attribute, moved = (nodes.get(kind) for kind in ("GeometryNodeInputNamedAttribute", "GeometryNodeSetPosition"))
-    if attribute is None or moved is None or attribute.inputs["Name"].default_value != OFFSET_ATTRIBUTE:
+    attribute = nodes.get("GeometryNodeInputNamedAttribute")
+    if len(nodes) != len(tree.nodes) or attribute is None or attribute.data_type != "FLOAT_VECTOR":
         return False
     ways = {(link.from_node.bl_idname, link.to_node.bl_idname, link.to_socket.name) for link in tree.links}
-    return attribute.data_type == "FLOAT_VECTOR" and ways == {
-        ("NodeGroupInput", moved.bl_idname, "Geometry"),
-        (attribute.bl_idname, moved.bl_idname, "Offset"),
-        (moved.bl_idname, "NodeGroupOutput", "Geometry"),
-    }
+    if attribute.inputs["Name"].is_linked:
+        return ways == _OFFSET_WAYS | _NAME_WAYS
+    return ways == _OFFSET_WAYS and attribute.inputs["Name"].default_value == OFFSET_ATTRIBUTE
+
+
+_OFFSET_WAYS = {
+    ("NodeGroupInput", "GeometryNodeSetPosition", "Geometry"),
+    ("GeometryNodeInputNamedAttribute", "GeometryNodeSetPosition", "Offset"),
+    ("GeometryNodeSetPosition", "NodeGroupOutput", "Geometry"),
+}
+_NAME_WAYS = {
+    ("NodeGroupInput", "FunctionNodeCompare", "A"),
+    ("FunctionNodeCompare", "GeometryNodeSwitch", "Switch"),
+    ("NodeGroupInput", "GeometryNodeSwitch", "False"),
+    ("GeometryNodeSwitch", "GeometryNodeInputNamedAttribute", "Name"),
+}
+"""Links of the group: nodes, and the socket that each leads into."""
 
 
 def find_lights() -> bpy.types.NodeTree | None:

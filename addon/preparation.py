@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from .analysis import Found
+from .analysis import Found, last_found
 from .checks import Problem, find_problems
 from .compatibility import achromatic_reason, require_blender
 from .lights import update_lights
@@ -90,7 +90,7 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
         changes += parted
         problems += coincident
         if parted:
-            found = analyse(scene)
+            found = last_found(scene)
     return Preparation(tuple(changes), tuple(problems + find_problems(scene)), found)
 
 

@@ -335,7 +335,8 @@ def _merge_offsets() -> list[str]:
     ]
     if [tree.name for tree in found] in ([], [OFFSET_GROUP]):
         return []
-    kept, *copies = found
+    # One that reads no name would forget those that the modifiers of the others give.
+    kept, *copies = sorted(found, key=lambda tree: len(tree.interface.items_tree), reverse=True)
     for tree in copies:
         tree.user_remap(kept)
     _remove_unused(copies, bpy.data.node_groups.remove)

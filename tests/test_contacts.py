@@ -224,11 +224,11 @@ def test_a_box_standing_on_a_bigger_one_coincides_with_it(cells, turn):
     matrix = np.array(Matrix.Rotation(turn, 4, "Z"))
     bodies = [Body(floor, at(), 1, 1), Body(box, matrix, 2, 2)]
     found = analyse(bodies)
-    other, faces, signs = found[1].coincident[0]
+    other, faces, signs, whole = found[1].coincident[0]
     bottom = np.flatnonzero((placed(bodies[1])[:, :, 2] == 0.0).all(axis=1))
     assert other == 0
     assert sorted(faces) == sorted(bottom)
-    assert (signs == -1).all()
+    assert (signs == -1).all() and whole.all()
     assert (codes_of(found[1], bodies[1])[faces] == PROBE).all()
     assert_true(bodies, found)
 
@@ -240,10 +240,10 @@ def test_identical_spheres_coincide_everywhere():
     for other in (sphere, copy, turned):
         found = analyse([Body(sphere, at(1, 2, 3), 1, 1), Body(other, at(1, 2, 3), 2, 2)])
         for index, contact in enumerate(found):
-            ((partner, faces, signs),) = contact.coincident
+            ((partner, faces, signs, whole),) = contact.coincident
             assert (contact.code, partner) == (PROBE, 1 - index)
             assert sorted(faces) == list(range(len(sphere.triangles)))
-            assert (signs == 1).all()
+            assert (signs == 1).all() and whole.all()
 
 
 def test_surfaces_that_share_a_part_of_a_side_are_left_to_rays_there():
@@ -518,3 +518,186 @@ def test_connected_components_are_those_of_a_search():
         for i, j in zip(a, b):
             expected[i] = expected[j] = min(expected[i], expected[j])
     assert np.array_equal(root == root[:, None], expected == expected[:, None])
+
+
+def on_surface(points: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(k, m) whether points lie on triangles, by comparing all with all."""
+    a, b, c = triangles.transpose(1, 0, 2)
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    on = np.abs(np.einsum("kmx,mx->km", points[:, None] - a, normal)) < 1e-6
+    for u, v in ((a, b), (b, c), (c, a)):
+        on &= np.einsum("kmx,mx->km", points[:, None] - u, np.cross(normal, v - u)) > -1e-9
+    return on
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_faces_that_share_part_of_a_plane_are_those_that_samples_find(seed):
+    """Boxes on a lattice, all turned and moved alike, so that many faces lie partly in one plane, few wholly."""
+    rng = np.random.default_rng(seed)
+    turn = random_matrix(rng, 2.0)
+    bodies = []
+    for number in range(4):
+        low = rng.integers(0, 4, 3)
+        high = low + rng.integers(1, 4, 3)
+        bodies.append(Body(grid_box(low, high, int(rng.integers(1, 3))), turn, number, number))
+    weights = rng.dirichlet((1.0, 1.0, 1.0), 400)
+    for index, contact in enumerate(analyse(bodies)):
+        own = placed(bodies[index])
+        normals = np.cross(own[:, 1] - own[:, 0], own[:, 2] - own[:, 0])
+        for other, body in enumerate(bodies):
+            if other == index:
+                continue
+            theirs = placed(body)
+            their_normals = np.cross(theirs[:, 1] - theirs[:, 0], theirs[:, 2] - theirs[:, 0])
+            parallel = np.linalg.norm(np.cross(normals[:, None], their_normals[None]), axis=2) < 1e-9
+            expected, signs, whole = [], [], []
+            for face, triangle in enumerate(own):
+                on = on_surface(weights @ triangle, theirs) & parallel[face]
+                if on.any():
+                    expected.append(face)
+                    signs.append(np.sign(normals[face] @ their_normals[on.any(axis=0)][0]))
+                    whole.append(on.any(axis=1).all())
+            found = [facts[1:] for facts in contact.coincident if facts[0] == other]
+            order = np.argsort(found[0][0]) if found else []
+            assert (found[0][0][order].tolist() if found else []) == expected
+            if found:
+                assert found[0][1][order].tolist() == signs
+                assert found[0][2][order].tolist() == whole
+
+
+def test_boxes_that_only_share_an_edge_coincide_nowhere():
+    """Their tops lie in one plane, but side by side."""
+    bodies = [Body(grid_box((0, 0, 0), (1, 1, 1), 2), at(x, y), i, i) for i, (x, y) in enumerate([(0, 0), (1, 1)])]
+    assert all(contact.coincident == () for contact in analyse(bodies))
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_many_pairs_at_once_are_what_each_is_alone(seed):
+    rng = np.random.default_rng(seed)
+    shapes = [icosphere(1), icosphere(2), grid_box((-1, -1, -1), (1, 1, 1), 2)]
+    shapes += [joined(icosphere(1, 0.5, (-0.7, 0, 0)), icosphere(1, 0.5, (0.7, 0, 0)))]
+    shapes += [joined(icosphere(1), inverted(icosphere(1, 0.6)))]
+    places = [contacts._Placed(shapes[rng.integers(5)], random_matrix(rng, 1.5)) for _ in range(9)]
+    places += [contacts._Placed(places[0].solid, places[0].matrix)]
+    pairs = [(places[i], places[j]) for i in range(10) for j in range(i)]
+    for (one, two), pair in zip(contacts._compare(pairs), pairs, strict=True):
+        for side, alone in zip((one, two), contacts._compare([pair])[0]):
+            for name in ("touching", "inside", "coincident", "signs", "whole"):
+                assert np.array_equal(getattr(side, name), getattr(alone, name))
+
+
+def fibres(count: int, axis=(0.3, -0.5, 0.8), radius: float = 0.3, seed: int | None = None) -> list[Solid]:
+    """Long prisms side by side in a square, all along one axis; with a seed, each anywhere and along its own."""
+    rng = np.random.default_rng(seed)
+    across = int(np.ceil(count**0.5))
+    angle = np.arange(6) * np.pi / 3.0
+    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1) * radius / across
+    points = np.concatenate([np.c_[ring, -np.ones(6)], np.c_[ring, np.ones(6)], [[0, 0, -1], [0, 0, 1]]])
+    i, j = np.arange(6), np.roll(np.arange(6), -1)
+    sides = [(i, j, 6 + j), (i, 6 + j, 6 + i), (j, i, i * 0 + 12), (6 + i, 6 + j, i * 0 + 13)]
+    triangles = np.concatenate([np.stack(side, axis=1) for side in sides]).astype(np.int32)
+    result = []
+    for number in range(count):
+        along = np.array(axis) if seed is None else rng.normal(size=3)
+        turn = frame_along(along)
+        place = np.array([number % across, number // across, 0]) / across if seed is None else rng.uniform(-1, 1, 3)
+        vertices = (points + place) @ turn if seed is None else points @ turn + place
+        result.append(Solid(vertices, triangles))
+    return result
+
+
+def frame_along(axis) -> np.ndarray:
+    """(3, 3) rows of which the last points along an axis."""
+    first = np.cross(axis, (0.1, 0.7, 0.3))
+    rows = np.array([first, np.cross(axis, first), axis])
+    return rows / np.linalg.norm(rows, axis=1, keepdims=True)
+
+
+def test_fibres_side_by_side_do_not_overlap_and_one_across_them_does():
+    apart = fibres(200)
+    assert joined(*apart).overlaps_itself is False
+    middle = apart[77].vertices.mean(axis=0)
+    across = fibres(1, axis=(1.0, 0.4, 0.2), radius=0.01)[0]
+    assert joined(*apart, Solid(across.vertices + middle, across.triangles)).overlaps_itself is True
+    bead = icosphere(1, 0.001, tuple(middle))
+    assert joined(*apart, bead).overlaps_itself is True
+    assert joined(*apart, inverted(bead)).overlaps_itself is False  # a bubble
+
+
+@pytest.mark.parametrize("seed", [None, 1])
+def test_few_pairs_of_many_long_islands_are_looked_at(seed):
+    """Boxes along the axes would leave about all pairs."""
+    place = contacts._Placed(joined(*fibres(400, radius=0.3 if seed is None else 0.02, seed=seed)), np.eye(4))
+    if seed is None:
+        place = contacts._Placed(place.solid, contacts._frame(place))
+    tolerance = np.full(400, 1e-6)
+    first, second = contacts._near_islands(place, tolerance)
+    assert len(first) < (4 if seed is None else 20) * 400
+    assert (first < second).all() and len(set(zip(first.tolist(), second.tolist()))) == len(first)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_boxes_of_islands_leave_out_no_pair_that_touches(seed):
+    solids = fibres(40, radius=0.4, seed=seed)
+    place = contacts._Placed(joined(*solids), np.eye(4))
+    pairs = set(zip(*(index.tolist() for index in contacts._near_islands(place, np.full(40, 1e-5)))))
+    island = place.islands[np.argsort(place.solid.order)].reshape(40, -1)[:, 0].tolist()
+    touching = 0
+    for i in range(40):
+        for j in range(i):
+            sides = contacts._compare([(contacts._Placed(solids[i], np.eye(4)), contacts._Placed(solids[j], np.eye(4)))])
+            if sides[0][0].concerned:
+                touching += 1
+                assert tuple(sorted((island[i], island[j]))) in pairs
+    assert touching > 10
+
+
+def test_winding_numbers_of_many_islands_are_those_by_solid_angles():
+    solid = joined(*fibres(80, radius=0.45, seed=4), icosphere(1, 0.7), inverted(icosphere(1, 0.2)))
+    points = np.random.default_rng(5).uniform(-0.8, 0.8, (300, 3))
+    place = contacts._Placed(solid, np.eye(4))
+    expected = winding(points, solid.vertices[solid.triangles])
+    assert set(expected) >= {0, 1, 2}
+    assert np.array_equal(contacts._windings(points, place), expected)
+    crowd = contacts._Crowd([contacts._Placed(icosphere(2), at(5.0)), place])
+    assert np.array_equal(contacts._windings(points, crowd, np.ones(300, dtype=int)), expected)
+
+
+def test_flat_sides_are_those_of_a_box():
+    sides = contacts.flat_sides(grid_box((0, 0, 0), (3, 2, 1), 4))
+    assert sorted(np.unique(sides, return_counts=True)[1].tolist()) == [32] * 6
+    assert len(set(contacts.flat_sides(icosphere(2)).tolist())) == 320
+
+
+@pytest.mark.parametrize("cells", [1, 3])
+def test_a_wall_is_as_far_as_it_is_and_a_rim_is_none(cells):
+    turn = random_matrix(np.random.default_rng(3), 1.0)
+    turn[:3, :3] /= np.cbrt(np.abs(np.linalg.det(turn[:3, :3])))
+    turn[:3, :3] = np.linalg.qr(turn[:3, :3])[0]
+    pane = grid_box((-1, -1, -0.003), (1, 1, 0), cells)
+    block = grid_box((-0.7, -0.6, 0), (1.2, 0.7, 1), cells)
+    bodies = [Body(pane, turn, 1, 1), Body(block, turn, 2, 2)]
+
+    def clearance(index: int, side: float, height: float) -> float:
+        flat = np.isclose(bodies[index].solid.vertices[bodies[index].solid.triangles][:, :, 2], height).all(axis=1)
+        faces = np.flatnonzero(flat)
+        return contacts.Walls(bodies).clearance(index, faces, np.full(len(faces), side), 0.01)
+
+    assert clearance(1, 1.0, 0.0) == pytest.approx(0.003, rel=1e-3)  # down through the pane
+    assert clearance(0, -1.0, 0.0) == pytest.approx(0.003, rel=1e-3)  # the pane's own other side
+    assert clearance(0, 1.0, 0.0) == 0.01  # up into the block
+    assert clearance(1, -1.0, 0.0) == 0.01
+
+
+@pytest.mark.parametrize(
+    ("shift", "answer"), [((0.0, 0.0), True), ((1.9, 0.3), True), ((2.1, 0.0), False), ((0.0, 0.0, 1e-3), False)]
+)
+def test_what_rests_on_part_of_a_foreign_plane_is_found(shift, answer):
+    turn = at(*shift)
+    table = grid_box((-1, -1, -1), (1, 1, 0), 3)
+    top = Solid(table.vertices, table.triangles[(table.vertices[table.triangles][:, :, 2] == 0.0).all(axis=1)])
+    glass = placed(Body(grid_box((-1, -1, 0), (1, 1, 2), 2), turn, 1, 1)).reshape(-1, 3)
+    standing = Solid(glass, np.arange(len(glass), dtype=np.int32).reshape(-1, 3))
+    far = Solid(glass + 9.0, standing.triangles)
+    assert contacts.resting([far, standing], top) == ([1] if answer else [])
