@@ -22,12 +22,14 @@ from .spectral_images import TABLES, digest, ensure_row
 SHADER_FILE = "nested_dielectric.osl"
 COORDINATE_FILE = "spectral_coordinate.osl"
 LIGHT_FILE = "light.osl"
+MASK_FILE = "volume_mask.osl"
 MATERIAL_SLOTS = 8
 """As in osl/medium.h: slots of an object in which neighbours look for its dielectric."""
 
 CYCLES_OUTPUT = "Surface"
 VOLUME_OUTPUT = "Volume"
 PREVIEW_OUTPUT = "Preview"
+MASK_OUTPUT = "Volume Mask"
 
 MATERIAL_VERSION = 3
 """Of the group and of all that stands in a file with it. A release that changes any of it counts on."""
@@ -55,6 +57,8 @@ OUTSIDE_SOCKET = "Outside"
 LEVEL_SOCKET = "Outside Priority"
 OVERLAP_SOCKET = "Overlaps Itself"
 FOREIGN_SOCKET = "Foreign Objects"
+BY_VOLUME_SOCKET = "Absorbs by Volume"
+GIVES_BACK_SOCKET = "Gives Back"
 SURROUNDINGS_SOCKET = "Surroundings"
 SURROUNDINGS_COLOR_SOCKET = "Surroundings Transmittance"
 SLOTS_SOCKET = "Material Slots"
@@ -120,6 +124,13 @@ _ANALYSIS_SOCKETS = {
         CLEAR,
         "Transmittance of the medium outside",
     ),
+    BY_VOLUME_SOCKET: ("ByVolume", "BOOL", False, "The material's volume absorbs for all rays"),
+    GIVES_BACK_SOCKET: (
+        "GivesBack",
+        "BOOL",
+        False,
+        "Media that this one wins over absorb by their volumes; it gives back what they take inside it",
+    ),
     SLOTS_SOCKET: (
         "",
         "INT",
@@ -142,7 +153,7 @@ def ensure_group() -> bpy.types.NodeTree:
     found = find_group()
     if found is not None:
         return found
-    scripts = {name: make_script(name, inlined_source(name)) for name in (SHADER_FILE, COORDINATE_FILE)}
+    scripts = {name: make_script(name, inlined_source(name)) for name in (SHADER_FILE, COORDINATE_FILE, MASK_FILE)}
     tree = bpy.data.node_groups.new(GROUP_NAME, "ShaderNodeTree")
     tree[VERSION_PROPERTY] = MATERIAL_VERSION
     tree.description = "A dielectric that knows the media it touches"
@@ -241,10 +252,16 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
         VOLUME_OUTPUT,
         in_out="OUTPUT",
         socket_type="NodeSocketShader",
-        description="Absorption of light that comes straight from the camera or from an object inside the medium",
+        description="Absorption; where others win over the medium that of light that comes straight from the camera or from an object inside",
     )
     interface.new_socket(
         PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="A stand-in for EEVEE"
+    )
+    interface.new_socket(
+        MASK_OUTPUT,
+        in_out="OUTPUT",
+        socket_type="NodeSocketFloat",
+        description="1 where the medium fills a point, 0 where another wins: for the density of a volume of your own",
     )
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
     for parameter in SOCKETS:
@@ -380,7 +397,12 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     running.label = "Magenta where OSL does not run"
     links.new(running.outputs[0], outputs.inputs[CYCLES_OUTPUT])
 
-    links.new(_absorption(tree, coefficients, absorbs), outputs.inputs[VOLUME_OUTPUT])
+    by_volume = inputs.outputs[BY_VOLUME_SOCKET]
+    links.new(_absorption(tree, coefficients, absorbs, by_volume), outputs.inputs[VOLUME_OUTPUT])
+
+    mask = add_script(tree, "Volume Mask", scripts[MASK_FILE], {"Priority": "INT"}, {"Mask": "FLOAT"})
+    links.new(inputs.outputs["Priority"], mask.inputs["Priority"])
+    links.new(mask.outputs["Mask"], outputs.inputs[MASK_OUTPUT])
 
     links.new(_preview(tree, inputs), outputs.inputs[PREVIEW_OUTPUT])
     _arrange(tree)
@@ -547,21 +569,27 @@ def _absorption_coefficients(
 
 
 def _absorption(
-    tree: bpy.types.NodeTree, coefficients: bpy.types.NodeSocket, absorbs: bpy.types.NodeSocket
+    tree: bpy.types.NodeTree,
+    coefficients: bpy.types.NodeSocket,
+    absorbs: bpy.types.NodeSocket,
+    by_volume: bpy.types.NodeSocket,
 ) -> bpy.types.NodeSocket:
-    """Absorption of rays that start at the camera or at a foreign object, whose way may meet no surface of a medium.
+    """Absorption by Cycles' own volume: of all rays where the analysis says so (see :mod:`charging`); elsewhere of those that
+    start at the camera or at a foreign object, whose way may meet no surface of a medium.
 
     All other rays are charged by the shader, which knows who wins. Where nothing is absorbed the mix is folded away and
     Cycles sees no volume.
     """
+    math = partial(_math, tree)
     nodes, links = tree.nodes, tree.links
     path = nodes.new("ShaderNodeLightPath")
     charged = nodes.new("ShaderNodeVectorMath")
     charged.operation = "SCALE"
     links.new(coefficients, charged.inputs[0])
-    links.new(
-        _math(tree, "ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"]), charged.inputs["Scale"]
-    )
+    # Folds to 1, and no light path is asked, where the volume absorbs for all rays.
+    straight = math("ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"])
+    elsewhere = math("MULTIPLY", straight, math("SUBTRACT", 1.0, by_volume))
+    links.new(math("ADD", elsewhere, by_volume), charged.inputs["Scale"])
     volume = nodes.new("ShaderNodeVolumeCoefficients")
     volume.inputs["Scatter Coefficients"].default_value = (0.0, 0.0, 0.0)
     links.new(charged.outputs[0], volume.inputs["Absorption Coefficients"])
@@ -624,13 +652,15 @@ def _requests(
     in_others = {name: math("MULTIPLY", several, condition) for name, condition in conditions.items()}
     names += [
         (
-            f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value',
+            socket_path(slot, name),
             "OBJECT",
             in_others.get(name, several) if slot else conditions.get(name),
         )
         for slot in range(MATERIAL_SLOTS)
         for name in NEIGHBOUR_PARAMETERS
     ]
+    # Only objects without further slots are left to volumes.
+    names.append((socket_path(0, BY_VOLUME_SOCKET), "OBJECT", absorbs))
     sums: dict[bpy.types.NodeSocket | None, bpy.types.NodeSocket] = {}
     for name, kind, condition in names:
         attribute = tree.nodes.new("ShaderNodeAttribute")
@@ -642,6 +672,11 @@ def _requests(
     for condition, value in sums.items():
         total = _vector_math(tree, "ADD", total, _vector_math(tree, "MULTIPLY", value, condition))
     return total
+
+
+def socket_path(slot: int, name: str) -> str:
+    """The path of a dielectric's socket from the object whose slot it is in."""
+    return f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value'
 
 
 def _vector_math(

@@ -301,6 +301,8 @@ def test_the_shader_takes_exactly_the_tables_parameters():
         "ForeignNear",
         "AroundMedium",
         "AroundTransmittance",
+        "ByVolume",
+        "GivesBack",
         "Requests",
         "FrontIOR",
         "CountsPortals",
