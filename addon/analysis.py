@@ -22,17 +22,22 @@ import bpy
 import numpy as np
 
 from . import contacts, meshes
+from .charging import Filling, left_to_volumes
 from .contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
-from .materials import dielectric_node
+from .foreign import is_clear, is_seen_by_all, lamp_box, sends_light_on
 from .identity import NO_SCENE, known_number, scene_number
+from .lights import lamps
+from .materials import absorption_coefficients, dielectric_node, has_own_volume
 from .media import material_priority, media, own_priority
 from .node_group import (
     AIR_AROUND,
     ANALYSED,
     BY_OBJECT,
+    BY_VOLUME_SOCKET,
     CLEAR,
     FACE_ATTRIBUTE,
     FOREIGN_SOCKET,
+    GIVES_BACK_SOCKET,
     LEVEL_SOCKET,
     MATERIAL_SLOTS,
     NEIGHBOUR_VALUES,
@@ -43,6 +48,7 @@ from .node_group import (
     SLOTS_SOCKET,
     SURROUNDINGS_COLOR_SOCKET,
     SURROUNDINGS_SOCKET,
+    VOLUME_OUTPUT,
     has_analysis,
     is_offset_group,
 )
@@ -73,6 +79,9 @@ SETTLED_MODIFIERS = frozenset(
 )
 """Modifiers whose result depends on the mesh and on numbers alone, the same in the viewport and in a render."""
 
+ABSORPTION_VALUES = ("Transmittance", "Transmittance Depth")
+NOTHING_ABSORBED = (0.0, 0.0, 0.0)
+
 EVERYWHERE = np.array([(-np.inf,) * 3, (np.inf,) * 3])
 VAGUE = 0.5
 """Margin around what a render may show with another shape, in diagonals of its box: a subdivided surface stays within
@@ -102,6 +111,8 @@ class Outside:
     foreign: bool = True
     medium: tuple[float, float, float] = AIR_AROUND
     transmittance: tuple[float, float, float, float] = CLEAR
+    by_volume: bool = False
+    gives_back: bool = False
 
     @property
     def absorbs(self) -> bool:
@@ -344,12 +355,18 @@ class _Facts:
     :param values: IOR, transmittance and its depth; None if they may change from frame to frame.
     :param priority: None if it may change.
     :param displaces: it moves the surface of its objects.
+    :param coefficients: what it absorbs of each colour per length; None if it may change.
+    :param has_volume: its absorption is a volume to Cycles, the same everywhere.
+    :param has_own_volume: the artist has added a volume, which may scatter rays before they come to a surface.
     """
 
     values: tuple | None
     priority: int | None
     displaces: bool
     can_be_told: bool
+    coefficients: tuple[float, float, float] | None
+    has_volume: bool
+    has_own_volume: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -476,7 +493,7 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     for instance in depsgraph.object_instances:
         if instance.object.type != instance.object.original.type:
             continue  # the mesh of a text, a curve or a metaball, which stands before it
-        if instance.object.type in _SHAPED:
+        if instance.object.type in SHAPED:
             row = _row(scene, facts, instance.object, np.array(instance.matrix_world))
             doubt = instance.is_instance and (instancing_doubt() or instancing_doubt(instance.parent.original))
             rows.append(replace(row, box=EVERYWHERE, body=None, doubt=doubt) if doubt else row)
@@ -485,7 +502,7 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     rows += [
         _Row(obj, EVERYWHERE)
         for obj in hidden
-        if obj.type in _SHAPED
+        if obj.type in SHAPED
         and not obj.hide_render
         and not any(slot.material in facts for slot in obj.material_slots)
     ]
@@ -530,7 +547,7 @@ def _is_known(survey: _Survey, data: bpy.types.ID) -> bool:
 _CONVERTED = {"CURVE", "SURFACE", "FONT", "META"}
 """Types whose evaluated objects hold a mesh beside them."""
 
-_SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"}
+SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"}
 
 
 def _row(
@@ -682,11 +699,31 @@ def _facts(material: bpy.types.Material) -> _Facts:
         values = tuple(BY_NAME[name].bounded(node.inputs[name].default_value) for name in NEIGHBOUR_VALUES)
     priority = node.inputs["Priority"]
     output = tree.get_output_node("CYCLES")
+    linked = any(node.inputs[name].is_linked for name in ABSORPTION_VALUES)
     return _Facts(
         values,
         material_priority(material) if still and not priority.is_linked else None,
         output is not None and output.inputs["Displacement"].is_linked and material.displacement_method != "BUMP",
         has_analysis(node) and is_plugged(node),
+        absorption_coefficients(node) if still and not linked else None,
+        output is not None
+        and not linked
+        and _adds_to(node.outputs[VOLUME_OUTPUT], output.inputs["Volume"]),
+        has_own_volume(material),
+    )
+
+
+def _adds_to(source: bpy.types.NodeSocket, target: bpy.types.NodeSocket) -> bool:
+    """Whether the whole of a shader goes into a socket."""
+    return any(
+        link.to_socket == target
+        or (
+            link.to_node.bl_idname in ("ShaderNodeAddShader", "NodeReroute")
+            and not link.to_node.mute
+            and _adds_to(link.to_node.outputs[0], target)
+        )
+        for link in source.links
+        if not link.is_muted
     )
 
 
@@ -792,13 +829,10 @@ def _is_exact(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
     """Whether a render shows the very mesh that the viewport does, to all rays."""
     return (
         not scene.render.use_simplify
-        and all(getattr(obj, f"visible_{ray}") for ray in _RAYS)
+        and is_seen_by_all(obj)
         and all(map(_is_same_in_renders, obj.modifiers))
         and (obj.type not in _CONVERTED or _is_as_fine_in_renders(obj))
     )
-
-
-_RAYS = ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow")
 
 
 def _is_same_in_renders(modifier: bpy.types.Modifier) -> bool:
@@ -844,23 +878,88 @@ def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
     doubtful = bool(survey.doubts) or any(row.doubt for row in survey.rows if row.medium)
     boxes = np.array([row.box for row in survey.bodies]).reshape(-1, 2, 3)
     foreign = _meets(boxes, [row.box for row in survey.rows if not row.medium])
+    foreign |= np.array([bool(_labels(survey, row.obj)) for row in survey.bodies], dtype=bool)
     # Bodies of one priority that overlap are one: a ray may go from one to the next.
     priorities = np.array([row.body.priority for row in survey.bodies])
     foreign = np.isin(priorities, priorities[foreign])
     unclear = [row.box for row in survey.vague] + [_grown(row.box, NEAR) for row in survey.changed]
     near_unclear = _meets(boxes, unclear)
     changed = {row.body.priority for row in survey.changed if row.body is not None}
+    asking = {
+        index
+        for index, contact in enumerate(survey.contacts)
+        if doubtful or near_unclear[index] or _speaks_of(survey, contact, changed)
+    }
+    volumes, givers = _left_to_volumes(survey, boxes, asking)
     told: dict[bpy.types.Object, list[_Told]] = {}
     for index, (row, contact) in enumerate(zip(survey.bodies, survey.contacts)):
-        if doubtful or near_unclear[index] or _speaks_of(survey, contact, changed):
+        if index in asking:
             one = _Told(Outside(overlaps_itself=contact.robust or row in survey.changed))
         else:
-            one = _told(survey, row, contact, bool(foreign[[index, *contact.partners]].any()))
+            one = _told(survey, row, contact, bool(foreign[[index, *contact.partners]].any()), volumes)
         told.setdefault(row.obj, []).append(one)
     for row in survey.rows:
         if row.medium and (row.body is None or _has_linked_material(row.obj, survey.facts)):
             told[row.obj] = [_Told(Outside())]
-    return _merged(told)
+    merged = _merged(told)
+    for obj in merged if volumes else ():
+        material = _medium_of(survey, obj)
+        flags = {"by_volume": material in volumes, "gives_back": material in givers}
+        merged[obj] = replace(merged[obj], outside=replace(merged[obj].outside, **flags))
+    return merged
+
+
+def _medium_of(survey: _Survey, obj: bpy.types.Object) -> bpy.types.Material | None:
+    """The nested dielectric of an object that has no other."""
+    found = {slot.material for slot in obj.material_slots} & survey.facts.keys()
+    return found.pop() if len(found) == 1 else None
+
+
+def _left_to_volumes(survey: _Survey, boxes: np.ndarray, asking: set[int]) -> tuple[set, set]:
+    """Materials whose volumes absorb for all rays, and those that give back what volumes take where they win. `asking`:
+    bodies that are told nothing.
+    """
+    materials = [_medium_of(survey, row.obj) for row in survey.bodies]
+    if not any(survey.facts[material].coefficients != NOTHING_ABSORBED for material in materials):
+        return set(), set()
+    unclear = {_medium_of(survey, row.obj) for row in survey.rows if row.medium and row.body is None}
+    unclear |= {each for each, facts in survey.facts.items() if not facts.can_be_told or each.library is not None}
+    wanted = _meets(boxes, _beyond_surfaces(survey))
+    fillings = []
+    for index, (row, material, contact) in enumerate(zip(survey.bodies, materials, survey.contacts)):
+        facts = survey.facts[material]
+        certain = index not in asking and material not in unclear
+        fillings.append(
+            Filling(
+                material,
+                row.body.priority,
+                row.body.solid.mean_chord * abs(np.linalg.det(row.body.matrix[:3, :3])) ** (1 / 3),
+                facts.coefficients,
+                certain,
+                certain
+                and not contact.robust
+                and facts.has_volume
+                and row.obj.material_slots[0].material == material
+                and not any(map(is_clear, _labels(survey, row.obj))),
+                bool(wanted[index]) or facts.has_own_volume,
+            )
+        )
+    pairs = {tuple(sorted((index, other))) for index, each in enumerate(survey.contacts) for other in each.partners}
+    return left_to_volumes(fillings, pairs)
+
+
+def _labels(survey: _Survey, obj: bpy.types.Object) -> list[bpy.types.Material | None]:
+    """Materials of a medium that are none."""
+    return [slot.material for slot in obj.material_slots if slot.material not in survey.facts]
+
+
+def _beyond_surfaces(survey: _Survey) -> list[np.ndarray]:
+    """Boxes of what lets rays on or scatters them inside a medium, and of lamps, none of which a medium's surface knows."""
+    sends_on = cache(sends_light_on)
+    boxes = [row.box for row in survey.rows if not row.medium and sends_on(row.obj)]
+    boxes += [EVERYWHERE if _moves(lamp) else lamp_box(lamp) for lamp in lamps(survey.scene)]
+    instanced = {obj.instance_collection for obj in survey.scene.objects if obj.instance_collection is not None}
+    return boxes + [EVERYWHERE for each in instanced if any(obj.type == "LIGHT" for obj in each.all_objects)]
 
 
 def _has_linked_material(obj: bpy.types.Object, facts: dict[bpy.types.Material, _Facts]) -> bool:
@@ -914,7 +1013,7 @@ def _meets(boxes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
     return meets
 
 
-def _told(survey: _Survey, row: _Row, contact: Contact, foreign: bool) -> _Told:
+def _told(survey: _Survey, row: _Row, contact: Contact, foreign: bool, volumes: set) -> _Told:
     level = -1.0 if contact.level is None or contact.robust or survey.vague else float(contact.level)
     outside = Outside(contact.code, level, contact.robust, foreign)
     faces = contact.faces
@@ -927,6 +1026,8 @@ def _told(survey: _Survey, row: _Row, contact: Contact, foreign: bool) -> _Told:
             outside = replace(outside, code=PROBE if contact.code == MEDIUM else contact.code)
         else:
             ior, transmittance, depth = around.medium
+            if _medium_of(survey, survey.bodies[contact.around].obj) in volumes:
+                transmittance = CLEAR
             outside = replace(outside, medium=(float(around.priority), ior, depth), transmittance=transmittance)
     return _Told(outside, faces)
 
@@ -962,9 +1063,13 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
         if material.library is not None or not survey.facts[material].can_be_told:
             continue
         common = _common(told[obj].outside for obj in objects)
-        if common is None and any(obj.library is not None for obj in objects):
-            common = Outside()  # what a linked object carries is its own file's
-        _tell_material(material, common or Outside(BY_OBJECT), number, slots.get(material))
+        if common is None:
+            # What a linked object carries is its own file's. What concerns volumes is the same for all objects: a volume that
+            # read it of each would be noisy.
+            first = told[objects[0]].outside
+            code = PROBE if any(obj.library is not None for obj in objects) else BY_OBJECT
+            by_object = Outside(code, by_volume=first.by_volume, gives_back=first.gives_back)
+        _tell_material(material, common or by_object, number, slots.get(material))
         for obj in objects:
             _tell_object(obj, None if common else told[obj].outside)
     if survey.settled:
@@ -1015,6 +1120,8 @@ def _tell_material(material: bpy.types.Material, outside: Outside, number: int, 
         LEVEL_SOCKET: outside.level,
         OVERLAP_SOCKET: outside.overlaps_itself,
         FOREIGN_SOCKET: outside.foreign,
+        BY_VOLUME_SOCKET: number if outside.by_volume else NO_SCENE,
+        GIVES_BACK_SOCKET: outside.gives_back,
         SURROUNDINGS_SOCKET: outside.medium,
         SURROUNDINGS_COLOR_SOCKET: outside.transmittance,
         SLOTS_SOCKET: 1 if slots == 1 else MATERIAL_SLOTS,

@@ -8,15 +8,25 @@ from itertools import combinations
 
 import bpy
 import numpy as np
+from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from . import contacts, meshes
-from .analysis import is_relative, listed, triangles_of
+from .analysis import SHAPED, is_relative, listed, triangles_of
 from .animation import curves
-from .lights import carried_lamps, light_carriers, listed_lamps
-from .materials import dielectric_node, dielectrics, may_disperse, medium_material
+from .foreign import is_clear, lamp_box, sends_light_on
+from .identity import known_number
+from .lights import carried_lamps, lamps, light_carriers, listed_lamps
+from .materials import (
+    absorption_coefficients,
+    dielectric_node,
+    dielectrics,
+    has_own_volume,
+    may_disperse,
+    medium_material,
+)
 from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media, own_priority
-from .node_group import MATERIAL_SLOTS
+from .node_group import BY_VOLUME_SOCKET, MASK_OUTPUT, MATERIAL_SLOTS
 from .parameters import MAX_PRIORITY, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS
 from .trees import node_problems, shows_others_blindly, socket_value
 
@@ -71,6 +81,8 @@ def find_problems(scene: bpy.types.Scene) -> list[Problem]:
         problems += _dispersion_problems(scene)
     if objects:
         problems += _lamp_problems(scene)
+    problems += _tint_problems(scene, depsgraph, shapes)
+    problems += _volume_problems(shapes)
     return problems
 
 
@@ -382,6 +394,146 @@ def _lamp_problems(scene: bpy.types.Scene) -> list[Problem]:
     return problems
 
 
+def _is_tinted(obj: bpy.types.Object) -> bool:
+    return max(absorption_coefficients(dielectric_node(medium_material(obj)))) > 0.0
+
+
+def _is_left_to_volume(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
+    """Whether Cycles' volume absorbs in a medium for all rays, as an analysis has told its material."""
+    socket = dielectric_node(medium_material(obj)).inputs.get(BY_VOLUME_SOCKET)
+    return socket is not None and 0 < socket.default_value == known_number(scene)
+
+
+def _tint_problems(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, shapes: list[_Shape]) -> list[Problem]:
+    """What surfaces do not charge rightly for in a tinted medium that is not left to its volume."""
+    charged = [shape for shape in shapes if len(shape.triangles) and _is_tinted(shape.obj)]
+    problems = [
+        Problem(
+            shape.obj.name,
+            f"is tinted and has the label {slot.material.name!r}, which lets light into it unseen",
+            "make the label an object of its own, a little off the surface",
+        )
+        for shape in charged
+        for slot in shape.obj.material_slots
+        if dielectric_node(slot.material) is None and is_clear(slot.material)
+    ]
+    charged = [shape for shape in charged if not _is_left_to_volume(scene, shape.obj)]
+    problems += [
+        Problem(
+            shape.obj.name,
+            "is tinted and has a volume of its own in its material, whose scattered light is tinted in part",
+            _TO_VOLUME.format(shape.obj.name),
+        )
+        for shape in charged
+        if has_own_volume(medium_material(shape.obj))
+    ]
+    if charged:
+        inside = _Inside()
+        for name, points in _beyond_surfaces(scene, depsgraph, {shape.obj for shape in shapes}):
+            problems += [
+                Problem(
+                    name,
+                    f"shines, scatters or lets light through inside the tinted {shape.obj.name!r}, which tints that in part",
+                    _TO_VOLUME.format(shape.obj.name),
+                )
+                for shape in charged
+                if inside.any(shape, points)
+            ]
+    return problems
+
+
+_TO_VOLUME = (
+    "prepare the scene; should that not help, let nothing that touches {!r} move, link nothing into its colour, give it a "
+    "priority of its own, and less tint where others win over it"
+)
+
+_SAMPLES = 256
+"""Points of an object of which one must lie in a medium for the object to stand in it."""
+
+
+def _beyond_surfaces(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, known: set[bpy.types.Object]):
+    """Yield lamps and what lets light on, by name, with (n, 3) points of them."""
+    for lamp in lamps(scene):
+        if lamp.data.type != "SUN" and not lamp.hide_render:
+            yield lamp.name, lamp_box(lamp).mean(axis=0)[None]
+    for obj in scene.objects:
+        if obj in known or obj.type not in SHAPED or obj.hide_render or not sends_light_on(obj):
+            continue
+        if medium_material(obj) is not None:
+            continue
+        evaluated = obj.evaluated_get(depsgraph)
+        shape = _shape(evaluated, np.array(evaluated.matrix_world)) if obj.type == "MESH" else None
+        if shape is not None and len(shape.vertices):
+            yield obj.name, _points(shape)
+        else:
+            yield obj.name, np.array([tuple(obj.matrix_world @ Vector(corner)) for corner in obj.bound_box]).mean(axis=0)[None]
+
+
+def _points(shape: _Shape) -> np.ndarray:
+    """(n, 3) some points of a surface: corners and centres of triangles."""
+    points = np.concatenate([shape.vertices, shape.vertices[shape.triangles].mean(axis=1)])
+    return points[:: len(points) // _SAMPLES + 1]
+
+
+class _Inside:
+    """Which points lie in a closed shape, by the parity of crossings along a ray; trees are made once."""
+
+    def __init__(self) -> None:
+        self._trees: dict[int, BVHTree] = {}
+
+    def any(self, shape: _Shape, points: np.ndarray) -> bool:
+        """Whether a shape holds any of (n, 3) points."""
+        low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
+        near = points[((points >= low) & (points <= high)).all(axis=1)]
+        return any(self._holds(shape, Vector(point)) for point in near)
+
+    def _holds(self, shape: _Shape, point: Vector) -> bool:
+        key = id(shape)
+        if key not in self._trees:
+            self._trees[key] = _tree(shape)
+        way = Vector((0.3713, 0.4871, 0.7904)).normalized()
+        crossings = 0
+        while (hit := self._trees[key].ray_cast(point, way))[0] is not None:
+            crossings += 1
+            point = hit[0] + way * 1e-5
+        return crossings % 2 == 1
+
+
+def _tree(shape: _Shape) -> BVHTree:
+    return BVHTree.FromPolygons(shape.vertices.tolist(), shape.triangles.tolist(), all_triangles=True)
+
+
+def _volume_problems(shapes: list[_Shape]) -> list[Problem]:
+    """Volumes that an artist has added to a medium and that go on where another wins, or cannot tell where that is."""
+    problems = []
+    inside = _Inside()
+    for shape in shapes:
+        material = medium_material(shape.obj)
+        if not len(shape.triangles) or not has_own_volume(material):
+            continue
+        mask = dielectric_node(material).outputs.get(MASK_OUTPUT)
+        priority = get_priority(shape.obj)
+        for winner in (other for other in shapes if len(other.triangles) and get_priority(other.obj) < priority):
+            if mask is not None and mask.is_linked:
+                if winner.obj.matrix_world.determinant() < 0.0:
+                    problems.append(
+                        Problem(
+                            winner.obj.name,
+                            f"is mirrored, so the {MASK_OUTPUT!r} of {shape.obj.name!r} takes its inside for its outside",
+                            "apply its scale (Object > Apply > Scale) and recalculate its normals",
+                        )
+                    )
+            elif inside.any(shape, _points(winner)) or inside.any(winner, _points(shape)):
+                problems.append(
+                    Problem(
+                        shape.obj.name,
+                        f"has a volume of its own in its material that goes on inside {winner.obj.name!r}, which wins over it",
+                        f"multiply its density by the node's output {MASK_OUTPUT!r}",
+                    )
+                )
+    return problems
+
+
 def _mask_problems(shapes: list[_Shape]) -> list[Problem]:
     """Other shaders that show where the surface that they are mixed into does not exist."""
     used = {material for shape in shapes for material in shape.materials}
@@ -428,8 +580,7 @@ def _overlap_problems(shapes: list[_Shape]) -> list[Problem]:
 
     def tree(index: int) -> BVHTree:
         if index not in trees:
-            shape = shapes[index]
-            trees[index] = BVHTree.FromPolygons(shape.vertices.tolist(), shape.triangles.tolist(), all_triangles=True)
+            trees[index] = _tree(shapes[index])
         return trees[index]
 
     for i, j in combinations(range(len(shapes)), 2):

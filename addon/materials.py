@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -101,6 +102,22 @@ def _sellmeier_index(values: dict[Parameter, Any]) -> float:
             f"sellmeier_b={b}, sellmeier_c={c}: these have no index of refraction at 587.56 nm; "
             "C is the square of a wavelength in square micrometres"
         ) from None
+
+
+def absorption_coefficients(node: bpy.types.ShaderNodeGroup) -> tuple[float, float, float]:
+    """Return what a nested dielectric's node absorbs of red, green and blue per scene unit, as its volume has it."""
+    depth = node.inputs["Transmittance Depth"].default_value
+    left = node.inputs["Transmittance"].default_value[:3]
+    if depth <= 0.0:
+        return 0.0, 0.0, 0.0
+    return tuple(-math.log(min(max(channel, 1e-6), 1.0)) / depth for channel in left)
+
+
+def has_own_volume(material: bpy.types.Material) -> bool:
+    """Tell whether more than the node's own volume goes into the output of a nested dielectric's material."""
+    output = material.node_tree.get_output_node("CYCLES")
+    link = next(iter(output.inputs["Volume"].links), None) if output is not None else None
+    return link is not None and link.from_node != dielectric_node(material)
 
 
 def get_parameter(node: bpy.types.ShaderNodeGroup, parameter: Parameter) -> Any:

@@ -23,6 +23,7 @@ from .spectral_images import ensure_row, holds, read_rows
 SHADER_FILE = "nested_dielectric.osl"
 COORDINATE_FILE = "spectral_coordinate.osl"
 LIGHT_FILE = "light.osl"
+MASK_FILE = "volume_mask.osl"
 MATERIAL_SLOTS = 8
 """As in osl/medium.h: slots of an object in which neighbours look for its dielectric."""
 
@@ -40,6 +41,7 @@ FACT_OUTPUTS = {
     "Arriving Light": ("COLOR", "What the medium that the ray crossed has left of its light: a factor on what is mixed in"),
 }
 """Outputs for nodes of the artist's own: kinds and descriptions. The shader's names are the same without spaces."""
+MASK_OUTPUT = "Volume Mask"
 
 MATERIAL_VERSION = 3
 """Of the group and of all that stands in a file with it. A release that changes any of it counts on."""
@@ -76,6 +78,8 @@ OUTSIDE_SOCKET = "Outside"
 LEVEL_SOCKET = "Outside Priority"
 OVERLAP_SOCKET = "Overlaps Itself"
 FOREIGN_SOCKET = "Foreign Objects"
+BY_VOLUME_SOCKET = "Absorbs by Volume"
+GIVES_BACK_SOCKET = "Gives Back"
 SURROUNDINGS_SOCKET = "Surroundings"
 SURROUNDINGS_COLOR_SOCKET = "Surroundings Transmittance"
 SLOTS_SOCKET = "Material Slots"
@@ -157,6 +161,18 @@ _ANALYSIS_SOCKETS = {
         CLEAR,
         "Transmittance of the medium outside",
     ),
+    BY_VOLUME_SOCKET: (
+        "",
+        "INT",
+        NO_SCENE,
+        "The material's volume absorbs for all rays in the scene of this number",
+    ),
+    GIVES_BACK_SOCKET: (
+        "",
+        "BOOL",
+        False,
+        "Media that this one wins over absorb by their volumes; it gives back what they take inside it",
+    ),
     SLOTS_SOCKET: (
         "",
         "INT",
@@ -179,7 +195,7 @@ def ensure_group() -> bpy.types.NodeTree:
     found = find_group()
     if found is not None:
         return found
-    scripts = {name: make_script(name, inlined_source(name)) for name in (SHADER_FILE, COORDINATE_FILE)}
+    scripts = {name: make_script(name, inlined_source(name)) for name in (SHADER_FILE, COORDINATE_FILE, MASK_FILE)}
     tree = bpy.data.node_groups.new(GROUP_NAME, "ShaderNodeTree")
     tree[VERSION_PROPERTY] = MATERIAL_VERSION
     tree.description = "A dielectric that knows the media it touches"
@@ -374,10 +390,16 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
         VOLUME_OUTPUT,
         in_out="OUTPUT",
         socket_type="NodeSocketShader",
-        description="Absorption of light that comes straight from the camera or from an object inside the medium",
+        description="Absorption; where others win over the medium that of light that comes straight from the camera or from an object inside",
     )
     interface.new_socket(
         PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="A stand-in for EEVEE"
+    )
+    interface.new_socket(
+        MASK_OUTPUT,
+        in_out="OUTPUT",
+        socket_type="NodeSocketFloat",
+        description="1 where the medium fills a point, 0 where another wins: for the density of a volume of your own",
     )
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
     for parameter in SOCKETS:
@@ -471,7 +493,10 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     told = {osl_name: (name, kind) for name, (osl_name, kind, *_) in _ANALYSIS_SOCKETS.items() if osl_name}
     kinds |= {osl_name: "INT" if kind == "BOOL" else kind for osl_name, (_, kind) in told.items()}
     kinds |= {
+        "AnalysedScene": "INT",
         "AnalysisHolds": "INT",
+        "ByVolume": "INT",
+        "GivesBack": "INT",
         "Requests": "COLOR",
         "FrontIOR": "INT",
         "CountsPortals": "SHADER",
@@ -506,8 +531,14 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     front_ior = _takes_front_ior(tree)
     split_by_closures = math_node(tree, "MULTIPLY", inputs.outputs["Disperse"], front_ior)
     curves_matter = math_node(tree, "MAXIMUM", spectral, split_by_closures)
-    analysis_holds = _analysis_holds(tree, inputs)
+    scene = _analysed_scene(tree)
+    links.new(scene, script.inputs["AnalysedScene"])
+    analysis_holds = math_node(tree, "COMPARE", scene, inputs.outputs[SCENE_SOCKET], 0.5)
     links.new(analysis_holds, script.inputs["AnalysisHolds"])
+    by_volume = math_node(tree, "COMPARE", scene, inputs.outputs[BY_VOLUME_SOCKET], 0.5)
+    links.new(by_volume, script.inputs["ByVolume"])
+    gives_back = math_node(tree, "MULTIPLY", inputs.outputs[GIVES_BACK_SOCKET], analysis_holds)
+    links.new(gives_back, script.inputs["GivesBack"])
     links.new(_requests(tree, inputs, curves_matter, absorbs, analysis_holds), script.inputs["Requests"])
     links.new(spectral, script.inputs["Spectral"])
     links.new(front_ior, script.inputs["FrontIOR"])
@@ -534,7 +565,11 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     running.label = "Magenta where OSL does not run"
     links.new(running.outputs[0], outputs.inputs[CYCLES_OUTPUT])
 
-    links.new(_absorption(tree, coefficients, absorbs), outputs.inputs[VOLUME_OUTPUT])
+    links.new(_absorption(tree, coefficients, absorbs, by_volume), outputs.inputs[VOLUME_OUTPUT])
+
+    mask = add_script(tree, "Volume Mask", scripts[MASK_FILE], {"Priority": "INT"}, {"Mask": "FLOAT"})
+    links.new(inputs.outputs["Priority"], mask.inputs["Priority"])
+    links.new(mask.outputs["Mask"], outputs.inputs[MASK_OUTPUT])
 
     links.new(_preview(tree, inputs), outputs.inputs[PREVIEW_OUTPUT])
     for name in FACT_OUTPUTS:
@@ -596,8 +631,8 @@ def view_layer_attribute(tree: bpy.types.NodeTree, path: str) -> bpy.types.Shade
     return attribute
 
 
-def _analysis_holds(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
-    """1 where what the material keeps of an analysis holds for the scene and the frame that are rendered.
+def _analysed_scene(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
+    """The number of the scene that is rendered if what its materials keep of an analysis holds on this frame, else below 0.
 
     Scripts may change a scene on every frame, and while the shutter is open: then it holds on the frame that was looked at,
     if nothing blurs. Simplify may change every shape.
@@ -611,12 +646,12 @@ def _analysis_holds(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.typ
         view_layer_attribute(tree, path).outputs["Fac"]
         for path in ("frame_current", "render.use_motion_blur", "render.motion_blur_shutter", "render.use_simplify")
     )
-    this_scene = math("COMPARE", number, inputs.outputs[SCENE_SOCKET], 0.5)
     this_frame = math("COMPARE", frame_now, frame, 0.5)
     still = math("LESS_THAN", math("MULTIPLY", blurs, shutter), 1e-6)
     moment = math("MAXIMUM", every_frame, math("MULTIPLY", this_frame, still))
     shapes = math("SUBTRACT", analysed, simplified)
-    return math("GREATER_THAN", math("MULTIPLY", this_scene, math("MULTIPLY", moment, shapes)), 0.5)
+    holds = math("GREATER_THAN", math("MULTIPLY", moment, shapes), 0.5)
+    return math("SUBTRACT", math("MULTIPLY", holds, math("ADD", number, 1.0)), 1.0)
 
 
 def _takes_front_ior(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
@@ -749,21 +784,27 @@ def _absorption_coefficients(
 
 
 def _absorption(
-    tree: bpy.types.NodeTree, coefficients: bpy.types.NodeSocket, absorbs: bpy.types.NodeSocket
+    tree: bpy.types.NodeTree,
+    coefficients: bpy.types.NodeSocket,
+    absorbs: bpy.types.NodeSocket,
+    by_volume: bpy.types.NodeSocket,
 ) -> bpy.types.NodeSocket:
-    """Absorption of rays that start at the camera or at a foreign object, whose way may meet no surface of a medium.
+    """Absorption by Cycles' own volume: of all rays where the analysis says so (see :mod:`charging`); elsewhere of those that
+    start at the camera or at a foreign object, whose way may meet no surface of a medium.
 
     All other rays are charged by the shader, which knows who wins. Where nothing is absorbed the mix is folded away and
     Cycles sees no volume.
     """
+    math = partial(math_node, tree)
     nodes, links = tree.nodes, tree.links
     path = nodes.new("ShaderNodeLightPath")
     charged = nodes.new("ShaderNodeVectorMath")
     charged.operation = "SCALE"
     links.new(coefficients, charged.inputs[0])
-    links.new(
-        math_node(tree, "ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"]), charged.inputs["Scale"]
-    )
+    # Folds to 1, and no light path is asked, where the volume absorbs for all rays.
+    straight = math_node(tree, "ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"])
+    elsewhere = math_node(tree, "MULTIPLY", straight, math_node(tree, "SUBTRACT", 1.0, by_volume))
+    links.new(math_node(tree, "ADD", elsewhere, by_volume), charged.inputs["Scale"])
     volume = nodes.new("ShaderNodeVolumeCoefficients")
     volume.inputs["Scatter Coefficients"].default_value = (0.0, 0.0, 0.0)
     links.new(charged.outputs[0], volume.inputs["Absorption Coefficients"])
@@ -831,13 +872,15 @@ def _requests(
     in_others = {name: math("MULTIPLY", several, condition) for name, condition in conditions.items()}
     names += [
         (
-            f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value',
+            socket_path(slot, name),
             "OBJECT",
             in_others.get(name, several) if slot else conditions.get(name),
         )
         for slot in range(MATERIAL_SLOTS)
         for name in NEIGHBOUR_PARAMETERS
     ]
+    # Only objects without further slots are left to volumes.
+    names.append((socket_path(0, BY_VOLUME_SOCKET), "OBJECT", absorbs))
     sums: dict[bpy.types.NodeSocket | None, bpy.types.NodeSocket] = {}
     for name, kind, condition in names:
         attribute = tree.nodes.new("ShaderNodeAttribute")
@@ -849,6 +892,11 @@ def _requests(
     for condition, value in sums.items():
         total = _vector_math(tree, "ADD", total, _vector_math(tree, "MULTIPLY", value, condition))
     return total
+
+
+def socket_path(slot: int, name: str) -> str:
+    """The path of a dielectric's socket from the object whose slot it is in."""
+    return f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value'
 
 
 def _vector_math(

@@ -31,8 +31,8 @@ Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int
   s.valid = 1;
   s.traced = 1;
   s.mistold = 0;
-  /* The way through a medium that absorbs ends where another wins, so its priority counts even alone. */
-  int known = own.absorbs && looks_ahead; /* what may be constant stands first, or nothing folds away */
+  /* The way through a medium that is charged ends where another wins, so its priority counts even alone. */
+  int known = told_of_all.gives_back || (own.absorbs && looks_ahead); /* what may be constant stands first, or nothing folds away */
   if (known)
     inner.priority = shaded_priority(own.priority);
   if (always_air) {
@@ -44,7 +44,8 @@ Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int
     Outside told = told_of_all;
     int outside = told_outside(told);
     /* Split light needs the medium's whole curve, and a look ahead all that holds the point. */
-    if (outside == OUTSIDE_MEDIUM && (curves == CURVES_ALL || (looks_ahead && told.medium.absorbs)))
+    if (outside == OUTSIDE_MEDIUM && (curves == CURVES_ALL || (looks_ahead && told.medium.absorbs) ||
+                                      (told.gives_back && raytype("shadow"))))
       outside = OUTSIDE_UNKNOWN;
     if (outside == OUTSIDE_MEDIUM)
       outer = told.medium;
@@ -55,7 +56,7 @@ Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int
     int checks = ((!unknown || told.level >= 0.0) && spot_check()) ? 2 : 0;
     for (int i = unknown ? 0 : 1; i <= checks; i++) {
       Surroundings found = probe_surroundings(P, (i < 2) ? away : askew(away), inner.priority, known, i ? -1.0 : told.level,
-                                              told.overlaps_itself, curves, wavelength);
+                                              told.overlaps_itself, curves, wavelength, told.scene);
       if (i == 0) {
         s.traced = found.traced;
         inner.priority = found.own_priority;

@@ -25,7 +25,8 @@ struct Medium {
   int disperses;
   color transmittance;       /* colour that is left after transmittance_depth */
   float transmittance_depth; /* scene units */
-  int absorbs;
+  int absorbs;   /* for surfaces to charge */
+  int by_volume; /* it absorbs, but Cycles' volumes charge all of it */
 };
 
 Medium air()
@@ -40,6 +41,7 @@ Medium air()
   m.transmittance = color(1.0);
   m.transmittance_depth = 1.0;
   m.absorbs = 0;
+  m.by_volume = 0;
   return m;
 }
 
@@ -110,6 +112,18 @@ float hit_priority(output int slot)
   return is_priority(value) ? value[0] : hit_slot(slot);
 }
 
+/* Whether the face that was hit last, of a medium, has a material that is none, such as a label. */
+int hit_label()
+{
+  string priorities[MATERIAL_SLOTS] = SOCKETS("Priority");
+  float value[4];
+  float index = 0.0;
+  if (!getmessage("trace", SECOND_SLOT, value) || value[3] == 0.0)
+    return 0;
+  getmessage("trace", "material_index", index);
+  return !getmessage("trace", priorities[min((int)index, MATERIAL_SLOTS - 1)], value) || value[3] == 0.0;
+}
+
 /* Which media's dispersion a surface needs. */
 #define CURVES_NONE 0       /* no light is split: only what moves the index of white light */
 #define CURVES_DISPERSING 1 /* white light that may be split: only of media that split it */
@@ -148,7 +162,7 @@ DispersionCurve hit_dispersion(int slot, int curves)
 }
 
 /* All of the medium that was hit last, of which hit_priority() told the priority and the slot. */
-Medium hit_medium(float priority, output int slot, int curves, float wavelength)
+Medium hit_medium(float priority, output int slot, int curves, float wavelength, int scene)
 {
   string iors[MATERIAL_SLOTS] = SOCKETS("IOR");
   string transmittances[MATERIAL_SLOTS] = SOCKETS("Transmittance");
@@ -168,6 +182,10 @@ Medium hit_medium(float priority, output int slot, int curves, float wavelength)
       color left = color(value[0], value[1], value[2]);
       getmessage("trace", depths[slot], value);
       tint(m, left, value[0]);
+      if (m.absorbs && getmessage("trace", SOCKET("0", "Absorbs by Volume"), value) && value[0] == scene) {
+        m.absorbs = 0;
+        m.by_volume = 1;
+      }
     }
   }
   return m;

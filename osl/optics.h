@@ -55,6 +55,12 @@ color beer_lambert(color transmittance, float depth, float distance)
   return (depth > 0.0) ? pow(transmittance, max(distance, 0.0) / depth) : color(1.0);
 }
 
+/* What a volume absorbs of each colour per length, as addon/node_group.py has it. */
+color volume_coefficients(color transmittance, float depth)
+{
+  return log(max(transmittance, color(1e-6))) / -depth;
+}
+
 /* Roughness along and across the tangent, from the artist's roughness and anisotropy in [-1, 1]. The product of both is
  * that of the isotropic lobe: alpha = roughness^2. */
 void anisotropic_alpha(float roughness, float anisotropy, output float alpha_x, output float alpha_y)

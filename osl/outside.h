@@ -21,6 +21,8 @@ struct Outside {
   float level; /* the only priority that may be around, whose nearest surface decides; below 0 there are more */
   int overlaps_itself;
   int foreign;   /* foreign objects may stand in the medium or in those that it touches */
+  int scene;     /* number of the one whose analysis holds, below 0 of none */
+  int gives_back; /* volumes of media that lose absorb where ways end at this surface */
   Medium medium; /* of OUTSIDE_MEDIUM */
 };
 
@@ -37,7 +39,7 @@ Medium plain_medium(float priority, float ior, color transmittance, float transm
 /* What the object's own custom properties tell. The first number holds, from its lowest digit on: what lies outside,
  * whether the object overlaps itself, whether nothing foreign is near, whether the medium absorbs, and the level counted
  * from 1. An object without the properties reads zeros, which tell nothing. */
-Outside told_by_object()
+Outside told_by_object(int gives_back, int scene)
 {
   float object[4] = {OUTSIDE_UNKNOWN, 0.0, 1.0, 0.0}; /* then the medium's priority, IOR and Transmittance Depth */
   float left[4] = {1.0, 1.0, 1.0, 1.0};
@@ -49,6 +51,8 @@ Outside told_by_object()
   told.outside = facts & 7;
   told.overlaps_itself = (facts & 8) != 0;
   told.foreign = (facts & 16) == 0;
+  told.gives_back = gives_back;
+  told.scene = scene;
   told.level = (facts >> 6) - 1;
   told.medium = plain_medium(object[1], object[2], color(left[0], left[1], left[2]), object[3]);
   return told;

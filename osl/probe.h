@@ -1,6 +1,7 @@
 /* What a point lies in, asked of the scene by trace(). */
 #pragma once
 
+#include "optics.h"
 #include "outside.h"
 
 /* Crossings one probe may count. A ray through a whole forest meets fewer. */
@@ -57,7 +58,7 @@ struct Surroundings {
  * all closed and apart from each other: the nearest surface of theirs decides. Surfaces of an object that overlaps itself
  * count as any other's. */
 Surroundings probe_surroundings(point origin, vector direction, float own_priority, int own_is_known, float level,
-                                int overlaps_itself, int curves, float wavelength)
+                                int overlaps_itself, int curves, float wavelength, int scene)
 {
   float open[PROBE_LEVELS];
   int sum[PROBE_LEVELS];
@@ -131,7 +132,7 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
     }
     sum[k] += hit_crossing(direction);
     if (sum[k] > 0 && priority < s.medium.priority) {
-      s.medium = hit_medium(priority, slot, curves, wavelength);
+      s.medium = hit_medium(priority, slot, curves, wavelength, scene);
       if (slot == UNREADABLE_SLOT)
         s.traced = 0;
       s.complete = priority <= s.own_priority;
@@ -183,15 +184,22 @@ int lies_in_a_medium(point origin, vector direction, output int traced)
   return 0;
 }
 
+/* What is foreign on a way through a medium, objects and a label at its end: distances of the first and the last; below 0
+ * there is none. */
+struct Strangers {
+  float first;
+  float last;
+};
+
 /* How far a ray from inside a medium runs in it: to the surface where it ends, to a foreign object if those stop it, or
  * to reach. `holders` is the number of objects of its priority around the origin; surfaces of media that the medium
  * wins over do not exist in it. */
 float medium_extent(
-    point origin, vector direction, Medium m, int holders, float reach, int foreign_stops, output int foreign)
+    point origin, vector direction, Medium m, int holders, float reach, int foreign_stops, output Strangers strangers)
 {
   int open = holders;
   float t = 0.0;
-  foreign = 0;
+  strangers.first = strangers.last = -1.0;
   for (int i = 0; i < PROBE_HITS; i++) {
     if (!trace(origin, direction, "mindist", t, "maxdist", reach))
       break;
@@ -201,21 +209,26 @@ float medium_extent(
     int slot = NO_SLOT;
     float priority = hit_priority(slot);
     if (priority >= AIR_PRIORITY) {
-      if (foreign_stops) {
-        foreign = 1;
+      if (strangers.first < 0.0)
+        strangers.first = hit;
+      strangers.last = hit;
+      if (foreign_stops)
         return hit;
-      }
     }
     else if (priority <= m.priority) {
       int crossing = hit_crossing(direction);
-      if (priority < m.priority) {
-        if (crossing < 0)
-          return hit;
-      }
-      else {
+      int ends = crossing < 0;
+      if (priority == m.priority) {
         open -= crossing;
-        if (open <= 0)
-          return hit;
+        ends = open <= 0;
+      }
+      if (ends) {
+        if (hit_label()) {
+          strangers.last = hit;
+          if (strangers.first < 0.0)
+            strangers.first = hit;
+        }
+        return hit;
       }
     }
   }
@@ -227,7 +240,62 @@ int holds_foreign(Medium own)
 {
   Medium m = own;
   m.priority = shaded_priority(own.priority);
-  int foreign = 0;
-  medium_extent(P, backfacing() ? Ng : -Ng, m, 1, 1e30, 1, foreign);
-  return foreign;
+  Strangers strangers;
+  medium_extent(P, backfacing() ? Ng : -Ng, m, 1, 1e30, 1, strangers);
+  return strangers.first >= 0.0;
+}
+
+/* Part of a ray's length within which it began at the surface that is met there. */
+#define AT_ORIGIN 1e-4
+
+/* How much of the way that a ray has come was charged where it began: a surface of media looks ahead to the first foreign
+ * object, which then let the ray on. Nobody looked ahead where it began at a foreign object or in mid-air. */
+float charged_ahead(float travelled)
+{
+  if (raytype("volume_scatter"))
+    return 0.0;
+  float before = AT_ORIGIN * travelled;
+  point start = P + I * (travelled + before);
+  int began_at_medium = 0, began_at_foreign = 0;
+  float t = 0.0;
+  for (int i = 0; i < PROBE_HITS && trace(start, -I, "mindist", t, "maxdist", travelled + before); i++) {
+    float hit = 0.0;
+    getmessage("trace", "hitdist", hit);
+    t = step_past(hit);
+    int slot = NO_SLOT;
+    int foreign = hit_priority(slot) >= AIR_PRIORITY;
+    if (hit < 2.0 * before) {
+      began_at_foreign = began_at_foreign || foreign;
+      began_at_medium = began_at_medium || !foreign;
+    }
+    else if (foreign)
+      return (began_at_foreign && !began_at_medium) ? 0.0 : hit - before;
+  }
+  return 0.0;
+}
+
+/* What gives light back what volumes of media that `m` wins over take on a way of that length through `m` from the surface on:
+ * a factor.
+ *
+ * A body takes by its coefficient over each stretch that it holds, which is the sum of the distances of its signed crossings
+ * along the whole ray, none of them further than the way's end. So nothing is to be known of the bodies one by one, and those
+ * that hold no part of the way cancel out. */
+color given_back(vector direction, Medium m, float length, int scene)
+{
+  color depth = color(0.0);
+  float t = 0.0;
+  for (int i = 0; i < PROBE_HITS && trace(P, direction, "mindist", t); i++) {
+    float hit = 0.0;
+    getmessage("trace", "hitdist", hit);
+    t = step_past(hit);
+    int slot = NO_SLOT;
+    float priority = hit_priority(slot);
+    if (priority < AIR_PRIORITY && priority > m.priority) {
+      int crossing = hit_crossing(direction);
+      Medium loser = hit_medium(priority, slot, CURVES_NONE, 0.0, scene);
+      if (loser.by_volume)
+        depth += crossing * min(hit, length) * volume_coefficients(loser.transmittance, loser.transmittance_depth);
+    }
+  }
+  return exp(depth);
 }
