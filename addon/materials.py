@@ -24,7 +24,7 @@ from .parameters import (
 )
 from .presets import Preset, load_preset
 from .spectra import SpectrumError, spectral_table
-from .trees import dielectric_places, shows_dielectric, value_socket
+from .trees import dielectric_places, shows_dielectric, shows_other_volume, value_socket
 from .working_space import working_gamut
 
 _SOCKET_KINDS = {"FLOAT": "VALUE", "BOOL": "BOOLEAN", "COLOR": "RGBA", "INDEX": "INT"}
@@ -115,9 +115,7 @@ def absorption_coefficients(node: bpy.types.ShaderNodeGroup) -> tuple[float, flo
 
 def has_own_volume(material: bpy.types.Material) -> bool:
     """Tell whether more than the node's own volume goes into the output of a nested dielectric's material."""
-    output = material.node_tree.get_output_node("CYCLES")
-    link = next(iter(output.inputs["Volume"].links), None) if output is not None else None
-    return link is not None and link.from_node != dielectric_node(material)
+    return shows_other_volume(material)
 
 
 def get_parameter(node: bpy.types.ShaderNodeGroup, parameter: Parameter) -> Any:

@@ -13,7 +13,7 @@ from typing import Any
 import bpy
 
 from .animation import is_animated
-from .node_group import CYCLES_OUTPUT, PREVIEW_OUTPUT, VOLUME_OUTPUT, group_version
+from .node_group import CYCLES_OUTPUT, DAMAGED, PREVIEW_OUTPUT, VOLUME_OUTPUT, group_version
 from .parameters import GROUP_NAME, NEIGHBOUR_PARAMETERS, SOCKETS
 
 Place = tuple[bpy.types.Node, ...]
@@ -53,6 +53,11 @@ def shows_others_blindly(material: bpy.types.Material) -> bool:
     asked = any(output.is_linked for node in dielectrics for output in node.outputs if output.name in MASKS)
     others = any(not is_dielectric(place[-1]) and place[-1].type != "BSDF_TRANSPARENT" for place, _ in sources)
     return bool(dielectrics) and others and not asked
+
+
+def shows_other_volume(material: bpy.types.Material) -> bool:
+    """Whether a volume that is no nested dielectric's reaches the output that Cycles renders."""
+    return any(not is_dielectric(place[-1]) for place, _ in _sources(material, "CYCLES", "Volume"))
 
 
 def value_socket(place: Place, name: str) -> bpy.types.NodeSocket | None:
@@ -147,6 +152,10 @@ def node_problems(material: bpy.types.Material) -> Iterator[tuple[str, str]]:
     where = f"material {material.name!r}"
     prepare = PREPARE if material.library is None else f"{PREPARE} in {material.library.filepath!r}"
     places = dielectric_places(material)
+    damaged = next((place[-1].node_tree for place in places if group_version(place[-1].node_tree) == DAMAGED), None)
+    if damaged is not None:
+        yield f"a nested dielectric in {where} whose group {damaged.name!r} is damaged", prepare
+        return
     if not places:
         yield (
             f"a nested dielectric in {where} that does not reach the output",

@@ -17,7 +17,7 @@ from mathutils import Matrix
 
 import nested_dielectric as nd
 from nested_dielectric import analysis, live
-from scenes import add_camera, add_mesh, add_sphere, diffuse, new_scene, render, set_striped_world
+from scenes import add_camera, add_sphere, diffuse, new_scene, render, set_striped_world
 
 MEDIA = 30
 IORS = (1.0, 1.1, 1.33, 1.5, 1.7)

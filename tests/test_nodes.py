@@ -5,12 +5,12 @@ import numpy as np
 import pytest
 
 import nested_dielectric as nd
-from nested_dielectric import registration
+from nested_dielectric import live, registration
 from nested_dielectric.checks import find_problems
 from nested_dielectric.materials import dielectric_node, get_parameter, medium_material, parameter_socket
 from nested_dielectric.parameters import BY_KEYWORD
 from nested_dielectric.trees import dielectric_places, socket_value
-from scenes import add_box, add_camera, add_sphere, new_scene, render, set_striped_world
+from scenes import add_camera, add_sphere, new_scene, render, set_striped_world
 
 GROUP = "Nested Dielectric"
 
@@ -212,6 +212,7 @@ def test_values_inside_a_group_that_neighbours_cannot_follow_are_named():
     add_sphere("Ball", 1.0, material)
     grouped(material)
     nd.prepare(bpy.context.scene)
+    live.remove()
     own = material.node_tree.nodes["My Glass"].node_tree
     inside = own.nodes[GROUP]
     inside.inputs["Transmittance Depth"].keyframe_insert("default_value", frame=1)
