@@ -27,7 +27,7 @@ from .contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Contact, M
 from .foreign import is_clear, is_seen_by_all, lamp_box, sends_light_on
 from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
-from .materials import absorption_coefficients, dielectric_node, has_own_volume
+from .materials import absorption_coefficients, dielectric_node, has_own_volume, unchanged_nodes
 from .media import material_priority, media, own_priority
 from .node_group import (
     AIR_AROUND,
@@ -93,6 +93,9 @@ NEAR = 1e-3
 
 VELOCITY = "velocity"
 """Attribute of points by which Cycles moves them while the shutter is open."""
+
+MOST_TELLING = 0.03
+"""Seconds that telling media may take at each step of a move; where it takes longer, all media ask until the mouse rests."""
 
 PATIENCE = 0.03
 """Seconds that one look at a scene may take while the mouse moves something in it."""
@@ -276,7 +279,12 @@ def hold(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
     if not settled or not survey.is_like(settled) or _of(scene).seconds < PATIENCE:
         _look(survey)
         return False
-    _conclude(replace(survey, contacts=settled.contacts, settled=settled))
+    survey = replace(survey, contacts=settled.contacts, settled=settled)
+    if _of(scene).telling > MOST_TELLING:
+        _of(scene).survey = survey
+        _set_validity(scene, replace(_validity(scene), holds=0.0))
+    else:
+        _conclude(survey)
     # What was told comes back as an update that changes no row.
     return not all(map(_Row.is_same, latest.rows, survey.rows))
 
@@ -321,6 +329,7 @@ _CONCERNED = (
 _SHADING = (bpy.types.Material, bpy.types.ShaderNodeTree)
 
 
+@unchanged_nodes()
 def _look(survey: _Survey) -> Found:
     """Find the contacts of a survey, and tell the media."""
     start = perf_counter()
@@ -332,9 +341,11 @@ def _look(survey: _Survey) -> Found:
 
 
 def _conclude(survey: _Survey) -> Found:
+    start = perf_counter()
     told = _outsides(survey)
     _tell(survey, told)
     known = _of(survey.scene)
+    known.telling = perf_counter() - start
     known.survey, known.found = survey, _found(survey, told)
     _forget_unused()
     _set_validity(survey.scene, _Validity(1.0, _frame(survey.scene), _validity(survey.scene).every_frame))
@@ -468,12 +479,13 @@ class _Known:
     """What this session knows of a scene.
 
     :ivar survey: as it was looked at last; None if it has to be looked at anew.
-    :ivar seconds: how long the last look took for which meshes were compared.
+    :ivar seconds: how long the last look took for which meshes were compared; telling: how long it took to tell all media.
     """
 
     survey: _Survey | None = None
     found: Found | None = None
     seconds: float = 0.0
+    telling: float = 0.0
     memory: Memory = field(default_factory=Memory)
 
 
@@ -485,6 +497,7 @@ def _of(scene: bpy.types.Scene) -> _Known:
     return _scenes.setdefault(scene.session_uid, _Known())
 
 
+@unchanged_nodes()
 def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     facts = _all_facts()
     rows: list[_Row] = []

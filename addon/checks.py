@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from functools import cached_property
 
 import bpy
 import numpy as np
@@ -22,8 +22,10 @@ from .materials import (
     dielectric_node,
     dielectrics,
     has_own_volume,
+    looked_up_once,
     may_disperse,
     medium_material,
+    unchanged_nodes,
 )
 from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media, own_priority
 from .node_group import BY_VOLUME_SOCKET, MASK_OUTPUT, MATERIAL_SLOTS
@@ -53,21 +55,49 @@ class Problem:
 class _Shape:
     """An evaluated mesh in world space.
 
+    :param mesh: the same in its own space, one for all objects that show it.
+
     :param materials: nested dielectrics that its faces have.
     """
 
     obj: bpy.types.Object
+    mesh: _Mesh
     vertices: np.ndarray
     triangles: np.ndarray
     materials: tuple[bpy.types.Material, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class _Mesh:
+    """An evaluated mesh in its own space, and what is wrong with it.
+
+    :param slots: material slots of its faces.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    slots: np.ndarray
+
+    @cached_property
+    def open_edges(self) -> int:
+        """Number of edges that are not between two faces turned alike; a seam is none."""
+        edges = meshes.open_edge_count(self.triangles)
+        return edges and meshes.open_edge_count(meshes.same_places(self.vertices)[self.triangles])
+
+    @cached_property
+    def is_inverted(self) -> bool:
+        """Whether its normals point inwards."""
+        return meshes.signed_volume(self.vertices.astype(np.float64), self.triangles) < 0.0
+
+
+@unchanged_nodes()
 def find_problems(scene: bpy.types.Scene) -> list[Problem]:
     """Look at every medium of a scene as it is evaluated now; change nothing."""
     depsgraph = _depsgraph(scene)
     objects = media(scene)
     evaluated = [obj.evaluated_get(depsgraph) for obj in objects]
-    shapes = [shape for obj in evaluated if (shape := _shape(obj, np.array(obj.matrix_world))) is not None]
+    known: dict[int, _Mesh] = {}
+    shapes = [shape for obj in evaluated if (shape := _shape(obj, np.array(obj.matrix_world), known)) is not None]
     problems = material_problems(scene)
     problems += _kind_problems(depsgraph)
     problems += [problem for obj in objects for problem in _object_problems(obj)]
@@ -93,6 +123,7 @@ def _depsgraph(scene: bpy.types.Scene) -> bpy.types.Depsgraph:
     return layer.depsgraph
 
 
+@unchanged_nodes()
 def material_problems(scene: bpy.types.Scene) -> list[Problem]:
     """Return what is wrong with the nodes of a scene's materials, each named by the first object that has it."""
     users: dict[bpy.types.Material, bpy.types.Object] = {}
@@ -107,7 +138,25 @@ def material_problems(scene: bpy.types.Scene) -> list[Problem]:
     ]
 
 
-def _shape(evaluated: bpy.types.Object, matrix: np.ndarray) -> _Shape | None:
+def _shape(evaluated: bpy.types.Object, matrix: np.ndarray, known: dict[int, _Mesh] | None = None) -> _Shape | None:
+    """known: meshes by the session's numbers of those that objects show as they are; brought up to date."""
+    obj = evaluated.original
+    shared = known is not None and obj.type == "MESH" and not obj.modifiers and obj.data.shape_keys is None
+    mesh = known.get(obj.data.session_uid) if shared else None
+    if mesh is None:
+        mesh = _mesh(evaluated)
+        if mesh is None:
+            return None
+        if shared:
+            known[obj.data.session_uid] = mesh
+    world = mesh.vertices.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    triangles = mesh.triangles[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else mesh.triangles
+    materials = [slot.material.original if slot.material else None for slot in evaluated.material_slots]
+    used = (materials[min(slot, len(materials) - 1)] for slot in mesh.slots) if materials else ()
+    return _Shape(obj, mesh, world, triangles, tuple(each for each in dict.fromkeys(used) if dielectric_node(each)))
+
+
+def _mesh(evaluated: bpy.types.Object) -> _Mesh | None:
     try:
         mesh = evaluated.to_mesh()
     except RuntimeError:
@@ -115,17 +164,11 @@ def _shape(evaluated: bpy.types.Object, matrix: np.ndarray) -> _Shape | None:
     if mesh is None:
         return None
     try:
-        vertices, triangles = triangles_of(mesh)
         slots = np.zeros(len(mesh.polygons), dtype=np.int32)
         mesh.polygons.foreach_get("material_index", slots)
+        return _Mesh(*triangles_of(mesh), np.unique(slots))
     finally:
         evaluated.to_mesh_clear()
-    world = vertices.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
-    if np.linalg.det(matrix[:3, :3]) < 0.0:
-        triangles = triangles[:, ::-1]
-    materials = [slot.material.original if slot.material else None for slot in evaluated.material_slots]
-    used = (materials[min(slot, len(materials) - 1)] for slot in np.unique(slots)) if materials else ()
-    return _Shape(evaluated.original, world, triangles, tuple(each for each in dict.fromkeys(used) if dielectric_node(each)))
 
 
 def _kind_problems(depsgraph: bpy.types.Depsgraph) -> list[Problem]:
@@ -268,14 +311,11 @@ def _mesh_problems(shape: _Shape, shapes: list[_Shape]) -> list[Problem]:
                 name, "has coordinates that are not numbers", "remove those vertices, or the modifier that makes them"
             )
         ]
-    edges = meshes.open_edge_count(shape.triangles)
-    if edges:
-        # A seam is no gap.
-        edges = meshes.open_edge_count(meshes.same_places(shape.vertices.astype(np.float32))[shape.triangles])
+    edges = shape.mesh.open_edges
     if edges:
         text = f"is not closed or its faces are turned against each other ({edges} edges)"
         return [Problem(name, text, _OPEN.get(obj.type, _CONVERT))]
-    if meshes.signed_volume(shape.vertices, shape.triangles) < 0.0:
+    if shape.mesh.is_inverted:
         remedy = _INVERTED.get(obj.type, f"{_CONVERT} and recalculate its normals")
         return [Problem(name, "has its normals pointing inwards", remedy)]
     return []
@@ -383,7 +423,23 @@ def _lamp_problems(scene: bpy.types.Scene) -> list[Problem]:
         for carrier in light_carriers(scene)
         if carrier.reason
     ]
-    if listed_lamps(scene) != carried_lamps(scene):
+    carried = carried_lamps(scene)
+    linked = {
+        material: obj
+        for obj in reversed(media(scene))
+        for _, material in dielectrics(obj)
+        if material.library is not None and carried
+    }
+    problems += [
+        Problem(
+            obj.name,
+            f"has the linked material {material.name!r}, whose lobes carry none of this scene's lamps, such as "
+            f"{carried[0].name!r}",
+            "make the material local, or switch Transmission and Glossy on in the Ray Visibility of the lamps",
+        )
+        for material, obj in linked.items()
+    ]
+    if listed_lamps(scene) != carried:
         problems.append(
             Problem(
                 scene.name,
@@ -487,20 +543,27 @@ class _Inside:
         near = points[((points >= low) & (points <= high)).all(axis=1)]
         return any(self._holds(shape, Vector(point)) for point in near)
 
-    def _holds(self, shape: _Shape, point: Vector) -> bool:
+    def overlap(self, one: _Shape, other: _Shape) -> bool:
+        """Whether two shapes cross, or one holds the other."""
+        if self._tree(one).overlap(self._tree(other)):
+            return True
+        return self.any(one, other.vertices[other.triangles[:1, 0]]) or self.any(other, one.vertices[one.triangles[:1, 0]])
+
+    def _tree(self, shape: _Shape) -> BVHTree:
         key = id(shape)
         if key not in self._trees:
-            self._trees[key] = _tree(shape)
+            self._trees[key] = BVHTree.FromPolygons(
+                shape.vertices.tolist(), shape.triangles.tolist(), all_triangles=True
+            )
+        return self._trees[key]
+
+    def _holds(self, shape: _Shape, point: Vector) -> bool:
         way = Vector((0.3713, 0.4871, 0.7904)).normalized()
         crossings = 0
-        while (hit := self._trees[key].ray_cast(point, way))[0] is not None:
+        while (hit := self._tree(shape).ray_cast(point, way))[0] is not None:
             crossings += 1
             point = hit[0] + way * 1e-5
         return crossings % 2 == 1
-
-
-def _tree(shape: _Shape) -> BVHTree:
-    return BVHTree.FromPolygons(shape.vertices.tolist(), shape.triangles.tolist(), all_triangles=True)
 
 
 def _volume_problems(shapes: list[_Shape]) -> list[Problem]:
@@ -559,6 +622,7 @@ def _mask_problems(shapes: list[_Shape]) -> list[Problem]:
     return problems
 
 
+@looked_up_once
 def _values(material: bpy.types.Material) -> tuple:
     """What neighbours read of a material."""
     node = dielectric_node(material)
@@ -571,29 +635,32 @@ def _signature(obj: bpy.types.Object) -> tuple:
 
 def _overlap_problems(shapes: list[_Shape]) -> list[Problem]:
     """Objects of equal priority that overlap are one medium; that they should be two different ones cannot be meant."""
-    problems = []
-    boxes = [
-        (shape.vertices.min(axis=0), shape.vertices.max(axis=0)) if len(shape.vertices) else None for shape in shapes
+    levels: dict[int, list[_Shape]] = {}
+    for shape in shapes:
+        if len(shape.triangles) and np.isfinite(shape.vertices).all():
+            levels.setdefault(get_priority(shape.obj), []).append(shape)
+    inside = _Inside()
+    return [
+        Problem(
+            one.obj.name,
+            f"overlaps {other.obj.name!r} with the same priority {priority} and another medium",
+            "give the one that should win the lower priority",
+        )
+        for priority, level in levels.items()
+        for one, other in _different_neighbours(level)
+        if inside.overlap(one, other)
     ]
-    media_of = [(get_priority(shape.obj), _signature(shape.obj)) for shape in shapes]
-    trees: dict[int, BVHTree] = {}
 
-    def tree(index: int) -> BVHTree:
-        if index not in trees:
-            trees[index] = _tree(shapes[index])
-        return trees[index]
 
-    for i, j in combinations(range(len(shapes)), 2):
-        (priority, medium), (other_priority, other_medium) = media_of[i], media_of[j]
-        if priority != other_priority or medium == other_medium or boxes[i] is None or boxes[j] is None:
-            continue
-        if meshes.boxes_overlap(*boxes[i], *boxes[j]) and tree(i).overlap(tree(j)):
-            a, b = shapes[i].obj.name, shapes[j].obj.name
-            problems.append(
-                Problem(
-                    a,
-                    f"overlaps {b!r} with the same priority {priority} and another medium",
-                    "give the one that should win the lower priority",
-                )
-            )
-    return problems
+def _different_neighbours(shapes: list[_Shape]) -> Iterator[tuple[_Shape, _Shape]]:
+    """Pairs of shapes of different media whose boxes meet."""
+    numbers: dict[tuple, int] = {}
+    kinds = np.array([numbers.setdefault(_signature(shape.obj), len(numbers)) for shape in shapes])
+    if len(numbers) < 2:
+        return
+    low, high = (np.array([end(shape.vertices, axis=0) for shape in shapes]) for end in (np.min, np.max))
+    for index, shape in enumerate(shapes):
+        rest = slice(index + 1, None)
+        meets = (low[rest] <= high[index]).all(axis=1) & (high[rest] >= low[index]).all(axis=1)
+        for other in np.flatnonzero(meets & (kinds[rest] != kinds[index])):
+            yield shape, shapes[index + 1 + other]

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import wraps
 from typing import Any
 
 import bpy
@@ -33,6 +35,40 @@ _KINDS = {(parameter.name, _SOCKET_KINDS.get(parameter.kind, parameter.kind)) fo
 
 PRESET_PROPERTY = "nd_preset"
 """Custom property of materials that presets made: what they are and where their numbers come from."""
+
+
+_looked_up: dict[tuple, Any] | None = None
+"""What functions of :func:`looked_up_once` returned in the outermost block of :func:`unchanged_nodes`."""
+
+
+@contextmanager
+def unchanged_nodes() -> Iterator[None]:
+    """Let the nodes of each material be looked through once, however many objects it has: within the block, none of them
+    may come, go or be plugged in otherwise.
+    """
+    global _looked_up
+    outer = _looked_up
+    if outer is None:
+        _looked_up = {}
+    try:
+        yield
+    finally:
+        _looked_up = outer
+
+
+def looked_up_once(function: Callable) -> Callable:
+    """Make a function of a material remember what it returns in a block of :func:`unchanged_nodes`."""
+
+    @wraps(function)
+    def remembering(material: bpy.types.Material | None) -> Any:
+        if _looked_up is None:
+            return function(material)
+        key = function, material
+        if key not in _looked_up:
+            _looked_up[key] = function(material)
+        return _looked_up[key]
+
+    return remembering
 
 
 def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.types.Material:
@@ -113,6 +149,7 @@ def absorption_coefficients(node: bpy.types.ShaderNodeGroup) -> tuple[float, flo
     return tuple(-math.log(min(max(channel, 1e-6), 1.0)) / depth for channel in left)
 
 
+@looked_up_once
 def has_own_volume(material: bpy.types.Material) -> bool:
     """Tell whether more than the node's own volume goes into the output of a nested dielectric's material."""
     return shows_other_volume(material)
@@ -212,6 +249,7 @@ def _set_table(
     node_group.set_table(node, table)
 
 
+@looked_up_once
 def dielectric_node(material: bpy.types.Material | None) -> bpy.types.ShaderNodeGroup | None:
     """Return the node that other media read ``material`` by, or None if it is no nested dielectric to them."""
     if material is None or material.node_tree is None:

@@ -12,7 +12,15 @@ from typing import Any
 import bpy
 
 from .animation import is_animated
-from .materials import dielectric_node, dielectrics, may_disperse, medium_material, preset_material
+from .materials import (
+    dielectric_node,
+    dielectrics,
+    looked_up_once,
+    may_disperse,
+    medium_material,
+    preset_material,
+    unchanged_nodes,
+)
 from .parameters import BY_KEYWORD, GROUP_NAME, MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
 from .trees import mend_nodes
 
@@ -122,6 +130,7 @@ def get_priority(obj: bpy.types.Object) -> int:
     return material_priority(material) if own is None else own
 
 
+@looked_up_once
 def material_priority(material: bpy.types.Material) -> int:
     """Return the priority that a nested dielectric gives objects without their own."""
     return BY_KEYWORD["priority"].bounded(dielectric_node(material).inputs["Priority"].default_value)
@@ -144,17 +153,20 @@ def all_objects(scene: bpy.types.Scene) -> set[bpy.types.Object]:
     return objects
 
 
+@unchanged_nodes()
 def media(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """Return every object of a scene that is a medium, those in instanced collections too, in winning order."""
     return winning_order(all_objects(scene))
 
 
+@unchanged_nodes()
 def dispersing_materials(scene: bpy.types.Scene) -> list[bpy.types.Material]:
     """Return the nested dielectrics of a scene that split light into colours, or are animated to."""
     found = {material for obj in media(scene) for _, material in dielectrics(obj)}
     return sorted(filter(may_disperse, found), key=lambda material: material.name_full)
 
 
+@unchanged_nodes()
 def winning_order(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
     """Return the media among ``objects``, the one that wins over all others first."""
     found = [obj for obj in objects if medium_material(obj) is not None]

@@ -19,6 +19,7 @@ from .materials import (
     set_spectrum,
     usable_spectrum_settings,
 )
+from .media_list import listed_media
 from .parameters import BY_KEYWORD, DISPERSION_MODELS, ParameterError, check_keywords
 from .passes import add_passes
 from .preparation import prepare
@@ -464,7 +465,7 @@ class _SceneOperator(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not media.media(context.scene):
+        if not any(vars(listed_media(context.scene)).values()):
             cls.poll_message_set("The scene has no medium; assign a preset first")
             return False
         return _supported(cls)

@@ -20,7 +20,8 @@ from .materials import (
     rendered_node,
     usable_spectrum_settings,
 )
-from .media import get_priority, media, own_priority, winning_order
+from .media import get_priority, own_priority
+from .media_list import listed_media
 from .operators import (
     LAMP_CARRIERS,
     SELLMEIER_REMEDY,
@@ -81,7 +82,7 @@ class MediaList(bpy.types.UIList):
 
     def filter_items(self, context: bpy.types.Context, data: bpy.types.Scene, property: str) -> tuple[list, list]:
         objects = list(getattr(data, property))
-        ordered = winning_order(objects)
+        ordered = list(listed_media(data).own)
         found = set(ordered)
         ordered += [obj for obj in objects if obj not in found]
         place = {obj: index for index, obj in enumerate(ordered)}
@@ -196,8 +197,7 @@ def draw_media(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     for direction, icon in (("UP", "TRIA_UP"), ("DOWN", "TRIA_DOWN")):
         buttons.operator(PriorityMove.bl_idname, text="", icon=icon).direction = direction
 
-    objects = set(scene.objects)
-    instanced = [obj for obj in media(scene) if obj not in objects]
+    instanced = listed_media(scene).instanced
     if instanced:
         rows = layout.box().column(align=True)
         rows.label(text="In Instanced Collections", icon="OUTLINER_OB_GROUP_INSTANCE")

@@ -7,10 +7,15 @@ from contextlib import ExitStack
 
 import bpy
 
-from . import live, operators, panels, versions
+from . import live, media_list, operators, panels, versions
 from .checks import material_problems
 from .compatibility import blender_note, blender_problem, settings_problem
 from .media import media
+
+_CHANGES = tuple(
+    getattr(bpy.app.handlers, f"{when}_post") for when in ("depsgraph_update", "frame_change", "undo", "redo", "load")
+)
+"""Handlers of all that may change which media a scene has."""
 
 _registered: ExitStack | None = None
 """How to take out what :func:`register` put in; None while nothing is in."""
@@ -44,6 +49,7 @@ def register() -> None:
             (bpy.app.handlers.render_init, warn_before_render),
             (bpy.app.handlers.load_post, mend_materials),
             (bpy.app.handlers.blend_import_post, mend_materials),
+            *((handlers, media_list.forget_media) for handlers in _CHANGES),
         ):
             handlers.append(handler)
             undo.callback(handlers.remove, handler)

@@ -1676,6 +1676,7 @@ def in_window(with_extension, monkeypatch):
     """As in a window, except that nothing comes to rest by itself and no look is quick."""
     monkeypatch.setattr(live, "has_window", lambda: True)
     monkeypatch.setattr(analysis, "PATIENCE", 0.0)
+    monkeypatch.setattr(analysis, "MOST_TELLING", np.inf)
     monkeypatch.setattr(live, "REST", 1e9)
 
 

@@ -299,8 +299,8 @@ def test_what_an_artist_has_plugged_in_stays_and_what_is_missing_is_named():
     material.use_transparent_shadow = False
     result = nd.prepare(bpy.context.scene)
     assert result.changes == ()
-    volume, shadows = map(str, result.problems)
-    assert "with an Add Shader node" in volume and "no Transparent Shadows" in shadows
+    texts = "\n".join(map(str, result.problems))
+    assert "with an Add Shader node" in texts and "no Transparent Shadows" in texts
     both = tree.nodes.new("ShaderNodeAddShader")
     tree.links.new(scatter.outputs[0], both.inputs[0])
     tree.links.new(tree.nodes[GROUP].outputs["Volume"], both.inputs[1])
