@@ -137,7 +137,7 @@ def refresh_lights() -> bool:
     tree = find_lights()
     if tree is None:
         return False
-    listed = {_driving_lamp(tree, node) for node in _script_nodes(tree)}
+    listed = {_driving_lamp(tree, node) for node in tree.nodes if node.type == "SCRIPT" and "Energy" in node.inputs}
     for scene in bpy.data.scenes:
         if not listed.isdisjoint(lamps(scene)):  # a list of before scenes had numbers
             scene_number(scene)

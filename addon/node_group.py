@@ -395,12 +395,6 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
     interface.new_socket(
         PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="A stand-in for EEVEE"
     )
-    interface.new_socket(
-        MASK_OUTPUT,
-        in_out="OUTPUT",
-        socket_type="NodeSocketFloat",
-        description="1 where the medium fills a point, 0 where another wins: for the density of a volume of your own",
-    )
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
     for parameter in SOCKETS:
         if parameter.panel not in panels:
@@ -442,7 +436,14 @@ def _add_fact_sockets(interface: bpy.types.NodeTreeInterface) -> None:
         interface.new_socket(
             name, in_out="OUTPUT", socket_type=_SOCKET_TYPES[kind], parent=panel, description=description
         )
-    interface.move(panel, len((CYCLES_OUTPUT, VOLUME_OUTPUT, PREVIEW_OUTPUT)))
+    mask = interface.new_socket(
+        MASK_OUTPUT,
+        in_out="OUTPUT",
+        socket_type="NodeSocketFloat",
+        description="1 where the medium fills a point, 0 where another wins: for the density of a volume of your own",
+    )
+    for item in (panel, mask):
+        interface.move(item, len((CYCLES_OUTPUT, VOLUME_OUTPUT, PREVIEW_OUTPUT)))
 
 
 def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:

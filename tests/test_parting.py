@@ -298,6 +298,13 @@ def test_a_group_of_an_older_file_learns_to_read_a_name():
     tree = bpy.data.node_groups.new(OFFSET_GROUP, "GeometryNodeTree")
     for way in ("INPUT", "OUTPUT"):
         tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    source, sink = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    offset, moved = tree.nodes.new("GeometryNodeInputNamedAttribute"), tree.nodes.new("GeometryNodeSetPosition")
+    offset.data_type = "FLOAT_VECTOR"
+    offset.inputs["Name"].default_value = OFFSET_ATTRIBUTE
+    tree.links.new(source.outputs[0], moved.inputs["Geometry"])
+    tree.links.new(offset.outputs["Attribute"], moved.inputs["Offset"])
+    tree.links.new(moved.outputs[0], sink.inputs[0])
     old = block("Old", (3, 3, 5), (4, 4, 6), 3)
     old.modifiers.new(OFFSET_GROUP, "NODES").node_group = tree
     values = np.zeros((8, 3), dtype=np.float32)

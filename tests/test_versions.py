@@ -52,7 +52,7 @@ def own_data() -> dict[str, list[str]]:
 
 ONE_OF_EACH = {
     "groups": ["Nested Dielectric", "Nested Dielectric Lights"],
-    "texts": ["light.osl", "nested_dielectric.osl", "spectral_coordinate.osl"],
+    "texts": ["light.osl", "nested_dielectric.osl", "spectral_coordinate.osl", "volume_mask.osl"],
     "images": ["Nested Dielectric Spectra"],
 }
 
