@@ -44,8 +44,12 @@ def update_materials() -> tuple[str, ...]:
     :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot render the materials.
     """
     require_blender()
+    return _update(list(_outdated_nodes()))
+
+
+def _update(outdated: list[bpy.types.ShaderNodeGroup]) -> tuple[str, ...]:
+    """Give nodes this version's group, and make one of the copies of what else the extension keeps."""
     changes = []
-    outdated = list(_outdated_nodes())
     if outdated:
         leftovers = _Leftovers()
         for node in outdated:
@@ -73,12 +77,16 @@ def update_materials() -> tuple[str, ...]:
 
 
 def mend_materials() -> tuple[str, ...]:
-    """Update materials if this Blender would show them wrong, as a file from another may have them; else let them be.
+    """Update materials if this Blender would show them wrong, as a file from another may have them; else let them be, but for
+    copies of this version's group, which would go by another list of lamps.
 
     Returns what was changed, in sentences.
     """
     if any(tree.library is None and _is_wrong_here(tree) for tree in bpy.data.node_groups):
         return update_materials()
+    copies = [node for node in _outdated_nodes() if group_version(node.node_tree) == MATERIAL_VERSION]
+    if copies:
+        return _update(copies)
     _arm_groups()
     return ()
 

@@ -14,7 +14,19 @@ import nested_dielectric as nd
 from nested_dielectric import analysis, live
 from nested_dielectric.identity import SCENE_PROPERTY
 from nested_dielectric.node_group import ANALYSED
-from scenes import add_camera, add_mesh, add_sphere, mostly_again, new_scene, read_picture, render, set_striped_world
+from scenes import (
+    add,
+    add_box,
+    add_camera,
+    add_mesh,
+    add_sphere,
+    mostly_again,
+    new_scene,
+    read_picture,
+    render,
+    set_striped_world,
+    set_world,
+)
 
 FRAMES = (1, 2, 3)
 
@@ -376,3 +388,67 @@ def test_many_shells_that_a_ray_enters_before_it_leaves_any_are_told_apart():
         for side in (-1.0, 1.0):
             add_sphere(f"Shell {index} {side}", 0.9 - 0.01 * index, clear, index, (side * 2.0, 0.0, 0.0), segments=16)
     assert differs(render(16), alone) < 2e-2
+
+
+def pane(material: bpy.types.Material) -> bpy.types.Scene:
+    """Rough glass before the dark."""
+    scene = bpy.context.scene
+    set_world((0.0, 0.0, 0.0))
+    add_box("Pane", (-2, -2, -0.1), (2, 2, 0.1), material, 1)
+    add_camera((0.1, 0.05, 4), (0.03, 0.02, 0), width=0.6)
+    return scene
+
+
+def add_lamp() -> None:
+    """One that the lobe of refraction carries, behind the pane."""
+    light = bpy.data.lights.new("Lamp", "AREA")
+    light.energy = 500.0
+    lamp = add("Lamp", light, (0.0, 0.0, -3.0))
+    lamp.rotation_euler.x = np.pi
+    lamp.visible_transmission = False
+
+
+@pytest.mark.parametrize("own_group", [False, True], ids=["first group", "second group"])
+@pytest.mark.parametrize("link", [False, True], ids=["appended", "linked"])
+def test_lamps_that_lobes_carry_stay_in_their_scene(link, own_group, tmp_path):
+    new_scene(16)
+    scene = pane(nd.new_material("Frosted", ior=1.5, roughness=0.3))
+    add_lamp()
+    nd.prepare(scene)
+    lit = render(64).mean()
+    file = str(tmp_path / "library.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    live.remove()
+    for has_lamp in (False, True):
+        new_scene(16)
+        if own_group:
+            nd.new_material("Another")
+        with bpy.data.libraries.load(file, link=link) as (_, wanted):
+            wanted.materials = ["Frosted"]
+        scene = pane(wanted.materials[0])
+        if has_lamp:
+            add_lamp()
+        unprepared = render(64).mean()
+        problems = [str(problem) for problem in nd.prepare(scene).problems]
+        if not has_lamp:
+            assert unprepared == render(64).mean() == 0.0 and problems == []
+        elif link:
+            assert len(problems) == 1 and "'Frosted'" in problems[0] and "local" in problems[0]
+        else:
+            # 16,384 samples of a lobe leave 1 % on either side.
+            assert problems == [] and render(64).mean() == pytest.approx(lit, rel=0.04)
+
+
+def test_each_scene_of_a_file_has_its_own_lamps():
+    new_scene(16)
+    scene = pane(nd.new_material("Frosted", ior=1.5, roughness=0.3))
+    add_lamp()
+    other = scene.copy()
+    other.collection.objects.unlink(bpy.data.objects["Lamp"])
+    nd.prepare(scene)
+    nd.prepare(other)
+    means = {}
+    for each in (other, scene):
+        bpy.context.window.scene = each
+        means[each] = render(64).mean()
+    assert means[other] == 0.0 < means[scene]

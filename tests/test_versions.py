@@ -187,7 +187,10 @@ def test_keyframes_and_drivers_follow_sockets_that_moved():
     assert own_data() == ONE_OF_EACH
 
 
-def test_what_appends_bring_twice_becomes_one(tmp_path, registered):
+@pytest.mark.parametrize("is_registered", [False, True], ids=["when updated", "at once with the extension"])
+def test_what_appends_bring_twice_becomes_one(is_registered, tmp_path, request):
+    if is_registered:
+        request.getfixturevalue("registered")
     build_scene()
     library = tmp_path / "library.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(library))
@@ -202,9 +205,12 @@ def test_what_appends_bring_twice_becomes_one(tmp_path, registered):
             wanted.objects = [name]
         scene.collection.objects.link(wanted.objects[0])
     copies = [tree for tree in bpy.data.node_groups if node_group.group_version(tree) is not None]
-    assert len(copies) > 1 and len(bpy.data.images) > 1
-    assert set(versions.outdated_materials()) == {"Glass", "Prism"}
-    assert "Glass: was one of several copies" in nd.update_materials()
+    if is_registered:
+        assert len(copies) == 1 and versions.outdated_materials() == []
+    else:
+        assert len(copies) > 1 and len(bpy.data.images) > 1
+        assert set(versions.outdated_materials()) == {"Glass", "Prism"}
+        assert "Glass: was one of several copies" in nd.update_materials()
     assert own_data() == ONE_OF_EACH
     expected = spectral_table("FL2", gamut="REC709", clamp_negative=False).astype(np.float32)
     assert np.array_equal(material_table(bpy.data.materials["Prism"]), expected)
