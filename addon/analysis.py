@@ -605,9 +605,15 @@ def _corners(evaluated: bpy.types.Object) -> np.ndarray:
 
 
 def _mesh_of(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
-    """:func:`triangles_of` an evaluated object."""
+    """:func:`triangles_of` an evaluated object; none of one that shows nothing."""
     try:
-        return triangles_of(evaluated.to_mesh())
+        mesh = evaluated.to_mesh()
+    except RuntimeError:
+        mesh = None
+    if mesh is None:
+        return np.empty((0, 3), dtype=np.float32), np.empty((0, 3), dtype=np.int32)
+    try:
+        return triangles_of(mesh)
     finally:
         evaluated.to_mesh_clear()
 

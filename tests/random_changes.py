@@ -195,7 +195,8 @@ def add_modifier(chance: random.Random) -> None:
     elif kind == "DISPLACE":
         modifier.strength = 0.05
     elif kind == "BOOLEAN":
-        modifier.object = chance.choice((None, some(chance)))
+        other = some(chance)
+        modifier.object = None if other == obj else other
     elif kind == "MIRROR":
         modifier.use_axis = (False, False, False)
 
@@ -410,8 +411,9 @@ def set_frame(chance: random.Random) -> None:
 
 @change
 def set_render(chance: random.Random) -> None:
+    """Persistent Data are left out: OSL crashes now and then over scripts that Cycles keeps while scenes come and go."""
     render_settings = scene_now().render
-    attribute = chance.choice(("use_simplify", "use_motion_blur", "use_persistent_data"))
+    attribute = chance.choice(("use_simplify", "use_motion_blur"))
     setattr(render_settings, attribute, not getattr(render_settings, attribute))
 
 
@@ -481,6 +483,19 @@ def heal(chance: random.Random) -> None:
 CHANGES += [heal] * 8
 
 
+def compare(samples: int) -> tuple[float, int]:
+    """Render the scene as it is known and without an analysis; return how much the pictures differ, as a root mean square, and
+    how many media knew what surrounds them.
+    """
+    known = render(samples)
+    found = analysis.last_found(scene_now())
+    nd.clear_analysis(scene_now())
+    live.remove()
+    difference = float(np.sqrt(((render(samples) - known) ** 2).mean()))
+    nd.analyse(scene_now())
+    return difference, len(found.known) + len(found.partly)
+
+
 def make_changes(seed: int, count: int, every: int, look: Callable[[str, float, int], None]) -> list[str]:
     """Make random changes to a scene, and render after every few of them with what is known and without.
 
@@ -502,13 +517,10 @@ def make_changes(seed: int, count: int, every: int, look: Callable[[str, float, 
             bpy.context.view_layer.update()
             if index % every == 0:
                 leave_mode(chance)
-                known = render(SAMPLES)
-                found = analysis.last_found(scene_now())
-                knowing = len(found.known) + len(found.partly)
-                nd.clear_analysis(scene_now())
-                live.remove()
-                difference = float(np.sqrt(((render(SAMPLES) - known) ** 2).mean()))
-                nd.analyse(scene_now())
+                difference, knowing = compare(SAMPLES)
+                if difference > SAME:
+                    # What charges for tint decides which lobes Cycles draws; that is noise.
+                    difference, knowing = compare(64 * SAMPLES)
                 look(f"change {index} of seed {seed}, after {latest[-every:]}", difference, knowing)
     finally:
         sys.excepthook = hook
