@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import count
 
 import bpy
@@ -69,7 +69,11 @@ def part_coincident(scene: bpy.types.Scene) -> tuple[list[str], list[Problem]]:
     others: dict[bpy.types.Object, dict[str, None]] = {}
     for left in reversed(range(PASSES + 1)):
         rows, found = looked_at(scene)
-        problems = []
+        found, alike = _between_objects([obj for obj, _ in rows], found)
+        problems = [
+            Problem(obj.name, "has instances with faces in the same place, which would all move alike", "let them overlap")
+            for obj in alike
+        ]
         moved: dict[bpy.types.Object, np.ndarray] = {}
         for index, move in plan([body for _, body in rows], found, rims=left < PASSES).items():
             obj, body = rows[index]
@@ -100,6 +104,21 @@ def part_coincident(scene: bpy.types.Scene) -> tuple[list[str], list[Problem]]:
         for obj, distance in distances.items()
     ]
     return changes, problems
+
+
+def _between_objects(
+    objects: Sequence[bpy.types.Object], found: Sequence[Contact]
+) -> tuple[list[Contact], list[bpy.types.Object]]:
+    """Contacts without what coincides with another instance of the same object, and the objects of which some does."""
+    result = []
+    alike: dict[bpy.types.Object, None] = {}
+    for obj, contact in zip(objects, found):
+        others = tuple(each for each in contact.coincident if objects[each[0]] != obj)
+        if len(others) < len(contact.coincident):
+            alike[obj] = None
+            contact = replace(contact, coincident=others)
+        result.append(contact)
+    return result, list(alike)
 
 
 def plan(bodies: Sequence[Body], found: Sequence[Contact], rims: bool = False) -> dict[int, Move]:

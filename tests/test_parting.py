@@ -437,3 +437,22 @@ def test_points_rise_with_all_their_faces():
     normals = np.array([[0.0, 0.02, 1.0], [0.0, -0.02, 1.0]])
     smooth = offsets(3, np.array([[0, 1, 2]] * 2), normals / np.linalg.norm(normals, axis=1)[:, None], np.ones(2))
     assert smooth[0] == pytest.approx([0.0, 0.0, 1.0], abs=1e-3)
+
+
+def test_instances_of_one_object_that_lie_in_one_plane_are_named_once_and_left():
+    """Whatever moves one of them moves all."""
+    scene = new_scene(8)
+    block("Table", (-9, -9, -1), (9, 9, -0.5), 1)
+    cup = block("Cup", (-1, -1, 0), (1, 1, 1), 2)
+    collection = bpy.data.collections.new("Cups")
+    scene.collection.objects.unlink(cup)
+    collection.objects.link(cup)
+    for index in range(5):
+        empty = bpy.data.objects.new("Instance", None)
+        empty.instance_type, empty.instance_collection = "COLLECTION", collection
+        empty.location.x = 1.3 * index
+        scene.collection.objects.link(empty)
+    done = nd.prepare(scene)
+    assert done.changes == () and not cup.modifiers
+    named = [str(problem) for problem in done.problems if "same place" in str(problem)]
+    assert len(named) == 1 and "'Cup'" in named[0] and "let them overlap" in named[0]
