@@ -1112,7 +1112,7 @@ def _most_slots() -> dict[bpy.types.Material, int]:
     most: dict[bpy.types.Material, int] = {}
     for obj in bpy.data.objects:
         count = len(obj.material_slots)
-        if any(modifier.type == "NODES" and not is_offset(modifier) for modifier in obj.modifiers):
+        if any(modifier.type in ("NODES", "BOOLEAN") and not is_offset(modifier) for modifier in obj.modifiers):
             count = MATERIAL_SLOTS
         for slot in obj.material_slots:
             most[slot.material] = max(most.get(slot.material, 0), count)

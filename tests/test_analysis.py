@@ -14,7 +14,7 @@ from nested_dielectric import analysis, live
 from nested_dielectric.analysis import Found
 from nested_dielectric.contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE
 from nested_dielectric.identity import SCENE_PROPERTY
-from nested_dielectric.node_group import BY_OBJECT, FACE_ATTRIBUTE, OBJECT_PROPERTIES, SCENE_SOCKET
+from nested_dielectric.node_group import BY_OBJECT, FACE_ATTRIBUTE, MATERIAL_SLOTS, OBJECT_PROPERTIES, SCENE_SOCKET
 from scenes import (
     add,
     add_box,
@@ -530,6 +530,15 @@ def test_materials_whose_objects_have_one_slot_tell_others_of_no_more():
     assert [inputs(material)["Material Slots"].default_value for material in (glass, water)] == [1, 8]
     nd.clear_analysis(scene)
     assert [inputs(material)["Material Slots"].default_value for material in (glass, water)] == [8, 8]
+
+
+def test_a_boolean_may_bring_materials_of_another_object():
+    scene, bead = ordinary_scene()
+    nd.analyse(scene)
+    assert inputs(bead.active_material)["Material Slots"].default_value == 1
+    bead.modifiers.new("Boolean", "BOOLEAN")
+    nd.analyse(scene)
+    assert inputs(bead.active_material)["Material Slots"].default_value == MATERIAL_SLOTS
 
 
 def test_a_medium_that_changes_or_disperses_is_asked_for_its_values():
