@@ -28,7 +28,7 @@ from .foreign import is_clear, is_seen_by_all, lamp_box, sends_light_on
 from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
 from .materials import absorption_coefficients, dielectric_node, has_own_volume, unchanged_nodes
-from .media import material_priority, media, own_priority
+from .media import SOLID_TYPES, material_priority, media, own_priority
 from .node_group import (
     AIR_AROUND,
     ANALYSED,
@@ -557,10 +557,10 @@ def _is_known(survey: _Survey, data: bpy.types.ID) -> bool:
     return isinstance(data, (bpy.types.Mesh, bpy.types.ShaderNodeTree))
 
 
-_CONVERTED = {"CURVE", "SURFACE", "FONT", "META"}
+_CONVERTED = SOLID_TYPES - {"MESH"}
 """Types whose evaluated objects hold a mesh beside them."""
 
-SHAPED = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"}
+SHAPED = SOLID_TYPES | {"CURVES", "POINTCLOUD", "VOLUME"}
 
 
 def _row(
@@ -650,7 +650,7 @@ def _body(
     priority = facts.priority if own is None else own
     if priority is None:
         raise _Doubt("has a priority that may change")
-    if evaluated.type != "MESH" and evaluated.type not in _CONVERTED or obj.type == "META":
+    if evaluated.type not in SOLID_TYPES or obj.type == "META":
         return None  # the shape of metaballs is that of a whole family
     is_shared = isinstance(obj.data, bpy.types.Mesh) and not obj.modifiers and not obj.data.shape_keys
     owner = obj.data if is_shared else obj

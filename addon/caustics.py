@@ -8,10 +8,10 @@ import bpy
 
 from .lights import LOBE, lamps, light_carriers
 from .materials import dielectric_node, dielectrics, get_parameter
-from .media import media
+from .media import SOLID_TYPES, media
 from .parameters import BY_KEYWORD
 
-_SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD"}
+_SURFACES = SOLID_TYPES | {"CURVES", "POINTCLOUD"}
 
 
 def set_shadow_caustics(scene: bpy.types.Scene, enabled: bool = True) -> tuple[str, ...]:

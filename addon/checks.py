@@ -32,9 +32,6 @@ from .node_group import BY_VOLUME_SOCKET, MASK_OUTPUT, MATERIAL_SLOTS
 from .parameters import MAX_PRIORITY, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS
 from .trees import node_problems, shows_others_blindly, socket_value
 
-SURFACES = frozenset(("MESH", "CURVE", "SURFACE", "FONT", "META"))
-"""Types of objects that a render shows as a mesh."""
-
 NEAR = 1e-4
 """By how much to move what rests on something else, in diagonals of its box."""
 
@@ -364,7 +361,7 @@ def _resting_problems(
     names: dict[int, dict[str, None]] = {}
     for instance in depsgraph.object_instances:
         obj = instance.object
-        if obj.type not in SURFACES or obj.original in among or obj.original.hide_render:
+        if obj.type not in SOLID_TYPES or obj.original in among or obj.original.hide_render:
             continue
         matrix = np.array(instance.matrix_world)
         box = np.array([tuple(corner) for corner in obj.bound_box]) @ matrix[:3, :3].T + matrix[:3, 3]

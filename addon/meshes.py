@@ -47,11 +47,6 @@ def signed_volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
     return float(np.dot(normal_x, x[0] + x[1] + x[2]) / 6.0)
 
 
-def boxes_overlap(low_a: np.ndarray, high_a: np.ndarray, low_b: np.ndarray, high_b: np.ndarray) -> bool:
-    """Tell whether two axis-aligned boxes share a volume."""
-    return bool(np.all(np.maximum(low_a, low_b) < np.minimum(high_a, high_b)))
-
-
 def is_closed(triangles: np.ndarray) -> bool:
     """Tell whether every directed edge is met exactly as often as its reverse, without sorting the edges.
 
