@@ -11,13 +11,36 @@ from .parameters import ParameterError, check_keywords
 
 PRESET_FOLDER = Path(__file__).resolve().parent.parent / "presets"
 
+GROUPS = (
+    "Glass",
+    "Water and Ice",
+    "Drinks",
+    "Liquids",
+    "Gems and Crystals",
+    "Plastics and Resins",
+    "Bubbles and Films",
+    "Laboratory Glass",
+)
+"""Groups of presets, in the order of menus."""
+
 
 @dataclass(frozen=True)
 class Preset:
-    """One preset: the material's name, what it is, where its numbers come from, and keyword arguments."""
+    """One preset.
+
+    :param key: its name in Python: the file's.
+    :param name: the material's name.
+    :param group: one of :data:`GROUPS`.
+    :param tags: words by which artists look for it.
+    :param description: what it is, in a sentence.
+    :param source: where its numbers come from.
+    :param parameters: keyword arguments of :func:`nested_dielectric.new_material`; lengths in metres.
+    """
 
     key: str
     name: str
+    group: str
+    tags: tuple[str, ...]
     description: str
     source: str
     parameters: dict[str, Any]
@@ -37,7 +60,9 @@ def load_preset(key: str, folder: Path = PRESET_FOLDER) -> Preset:
         raise ParameterError(f"unknown preset {key!r}; known are: {', '.join(preset_names(folder))}")
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
-        preset = Preset(key, data["name"], data["description"], data["source"], data["parameters"])
+        words = (data[word] for word in ("name", "group", "tags", "description", "source"))
+        name, group, tags, description, source = words
+        preset = Preset(key, name, group, tuple(tags), description, source, data["parameters"])
         check_keywords(preset.parameters)
     except (tomllib.TOMLDecodeError, KeyError, ParameterError) as error:
         raise ParameterError(f"preset file {path}: {error}") from None

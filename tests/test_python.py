@@ -268,7 +268,7 @@ def test_presets_work_together_without_setting_priorities():
 
 
 def test_a_broken_preset_file_is_named(tmp_path):
-    (tmp_path / "bad.toml").write_text('name = "Bad"\ndescription = ""\nsource = ""\n[parameters]\niorr = 1.0\n')
+    (tmp_path / "bad.toml").write_text('name = "Bad"\ngroup = "Glass"\ntags = []\ndescription = ""\nsource = ""\n[parameters]\niorr = 1.0\n')
     with pytest.raises(nd.ParameterError, match="bad.toml.*iorr"):
         presets.load_preset("bad", tmp_path)
 
