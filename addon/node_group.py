@@ -16,7 +16,17 @@ from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
 from .contacts import FACES, PROBE
 from .dispersion import mean_cauchy_distances
 from .identity import NO_SCENE, SCENE_PROPERTY
-from .parameters import BY_KEYWORD, GROUP_NAME, LARGEST, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS, Parameter
+from .parameters import (
+    BASIC_KEYWORDS,
+    BASICS,
+    BY_KEYWORD,
+    GROUP_NAME,
+    LARGEST,
+    NEIGHBOUR_PARAMETERS,
+    PRIORITY_PROPERTY,
+    SOCKETS,
+    Parameter,
+)
 from .shader_source import inlined_source
 from .spectral_images import ensure_row, holds, read_rows
 
@@ -280,6 +290,12 @@ def make_script(name: str, source: str) -> Script:
     return Script(name, source, compiled(source))
 
 
+def hide_internals(node: bpy.types.ShaderNodeGroup) -> None:
+    """Leave the sockets on a node that are an artist's, not those that the extension sets."""
+    for name in (*_ANALYSIS_SOCKETS, TABLE_SOCKET, MEANS_SOCKET):
+        node.inputs[name].hide = True
+
+
 def has_analysis(node: bpy.types.ShaderNodeGroup) -> bool:
     """Whether a material's group node can be told what surrounds it; those of older versions cannot."""
     return all(name in node.inputs for name in _ANALYSIS_SOCKETS)
@@ -398,7 +414,7 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
     for parameter in SOCKETS:
         if parameter.panel not in panels:
-            panels[parameter.panel] = interface.new_panel(parameter.panel, default_closed=bool(panels))
+            panels[parameter.panel] = interface.new_panel(parameter.panel, default_closed=True)
         socket = interface.new_socket(
             parameter.name,
             in_out="INPUT",
@@ -425,6 +441,14 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
     )
     table.hide_value = means.hide_value = True
     _add_fact_sockets(interface)
+    _put_basics_first(interface, panels[BASICS])
+
+
+def _put_basics_first(interface: bpy.types.NodeTreeInterface, panel: bpy.types.NodeTreeInterfacePanel) -> None:
+    """Moved after all have been made: what keyframes know sockets by is the order in which they are made."""
+    for place, keyword in enumerate(BASIC_KEYWORDS):
+        interface.move(interface.items_tree[BY_KEYWORD[keyword].name], place)
+    interface.remove(panel, move_content_to_parent=True)
 
 
 def _add_fact_sockets(interface: bpy.types.NodeTreeInterface) -> None:
@@ -442,8 +466,7 @@ def _add_fact_sockets(interface: bpy.types.NodeTreeInterface) -> None:
         socket_type="NodeSocketFloat",
         description="1 where the medium fills a point, 0 where another wins: for the density of a volume of your own",
     )
-    for item in (panel, mask):
-        interface.move(item, len((CYCLES_OUTPUT, VOLUME_OUTPUT, PREVIEW_OUTPUT)))
+    interface.move(mask, len((CYCLES_OUTPUT, VOLUME_OUTPUT, PREVIEW_OUTPUT)))
 
 
 def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:

@@ -7,7 +7,7 @@ from contextlib import ExitStack
 
 import bpy
 
-from . import live, media_list, operators, panels, versions
+from . import add_menu, dispersion_panels, lamp_panel, live, media_list, medium_panels, operators, panels, versions
 from .checks import material_problems
 from .compatibility import blender_note, blender_problem, settings_problem
 from .media import media
@@ -16,6 +16,14 @@ _CHANGES = tuple(
     getattr(bpy.app.handlers, f"{when}_post") for when in ("depsgraph_update", "frame_change", "undo", "redo", "load")
 )
 """Handlers of all that may change which media a scene has."""
+
+CLASSES = (
+    *operators.CLASSES,
+    *add_menu.CLASSES,
+    *panels.CLASSES,
+    *medium_panels.CLASSES,
+    *lamp_panel.CLASSES,
+)
 
 _registered: ExitStack | None = None
 """How to take out what :func:`register` put in; None while nothing is in."""
@@ -30,20 +38,24 @@ def register() -> None:
     if _registered is not None:
         return
     with ExitStack() as undo:
-        for cls in (*operators.CLASSES, *panels.CLASSES):
+        for cls in CLASSES:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
 
-        panels.open_pictures()
-        undo.callback(panels.close_pictures)
+        dispersion_panels.open_pictures()
+        undo.callback(dispersion_panels.close_pictures)
 
         bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
             name="Active Medium", get=panels.get_active, set=panels.set_active, options=set()
         )
         undo.callback(delattr, bpy.types.Scene, "nested_dielectric_active")
 
-        bpy.types.VIEW3D_MT_object.append(operators.draw_preset_menu)
-        undo.callback(bpy.types.VIEW3D_MT_object.remove, operators.draw_preset_menu)
+        for menu, entry in (
+            (bpy.types.VIEW3D_MT_object, operators.draw_preset_menu),
+            (bpy.types.NODE_MT_category_shader_shader, add_menu.draw_entry),
+        ):
+            menu.append(entry)
+            undo.callback(menu.remove, entry)
 
         for handlers, handler in (
             (bpy.app.handlers.render_init, warn_before_render),

@@ -28,6 +28,7 @@ from .node_group import (
     ensure_group,
     find_group,
     group_version,
+    hide_internals,
     is_offset_group,
     set_table,
     table_of,
@@ -182,6 +183,7 @@ def _exchange(node: bpy.types.ShaderNodeGroup, group: bpy.types.NodeTree) -> tup
         lost += _join(links, node.outputs.get(name), target, name, muted)
     for socket in (*node.inputs, *node.outputs):
         socket.hide = socket.name in hidden
+    hide_internals(node)
     if table is not None:
         set_table(node, table)
     else:

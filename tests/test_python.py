@@ -281,13 +281,14 @@ def test_every_socket_has_its_limits_and_a_description():
     set_by_the_extension = {"Spectral Table", "Spectral Table Means"} | {
         name for name, socket in sockets.items() if socket.parent.name == "Scene Analysis"
     }
-    assert [name for name in sockets if name not in set_by_the_extension] == [
-        parameter.name for parameter in parameters.SOCKETS
+    first = [parameters.BY_KEYWORD[keyword].name for keyword in parameters.BASIC_KEYWORDS]
+    assert [name for name in sockets if name not in set_by_the_extension] == first + [
+        parameter.name for parameter in parameters.SOCKETS if parameter.name not in first
     ]
     for parameter in parameters.SOCKETS:
         item = sockets[parameter.name]
         assert item.description == parameter.description
-        assert item.parent.name == parameter.panel
+        assert item.parent.name == ("" if parameter.panel == parameters.BASICS else parameter.panel)
         if parameter.kind in ("INT", "FLOAT"):
             assert (item.min_value, item.max_value) == pytest.approx((parameter.minimum, parameter.maximum))
 
