@@ -41,14 +41,14 @@ def draw_parameter(layout: bpy.types.UILayout, material: bpy.types.Material, key
     """
     parameter = BY_KEYWORD[keyword]
     label = parameter.label or parameter.name
-    column = layout.column(align=True)
-    column.active = has_effect
+    field = layout.column(align=True) if parameter.kind in ("MENU", "VECTOR") else layout.row()
+    field.active = has_effect
     socket = parameter_socket(material, parameter.name)
     if socket is None or socket.hide_value:
         links = rendered_node(material).inputs[parameter.name].links
-        draw_value(column, label, links[0].from_node.name if links else "Nothing")
+        draw_value(field, label, links[0].from_node.name if links else "Nothing")
     elif parameter.kind == "MENU":
-        column.label(text=label)
-        column.prop(socket, "default_value", text="")
+        field.label(text=label)
+        field.prop(socket, "default_value", text="")
     else:
-        column.prop(socket, "default_value", text=label, slider=parameter.unit == "FACTOR")
+        field.prop(socket, "default_value", text=label, slider=parameter.unit == "FACTOR")

@@ -25,6 +25,7 @@ from .parameters import (
 )
 
 DISPERSION_PANEL = "Dispersion"
+LOBES_PANEL = "Direct Light"
 HEADINGS = tuple(dict.fromkeys(parameter.panel for parameter in SOCKETS if parameter.panel != BASICS))
 """Of the panels under Advanced."""
 
@@ -68,6 +69,8 @@ def draw_advanced(
         draw_spectrum(layout, material)
         return
     values = known_values(context.scene, material)
+    if heading == LOBES_PANEL and not values[LAMPS_BY_LOBE]:
+        draw_text(layout, context, "Rays see all lamps of this scene; Lamps above lets lobes carry them", "INFO")
     for parameter in SOCKETS:
         if parameter.panel == heading:
             draw_parameter(layout, material, parameter.keyword, has_effect(parameter, values))

@@ -1,6 +1,5 @@
 """The panels of a medium: its parameters, its dispersion and its spectrum."""
 
-import blf
 import bpy
 import numpy as np
 import pytest
@@ -283,6 +282,8 @@ FIELD, LINE = 160, 205
 
 
 def test_no_name_is_cut_at_the_width_that_the_sidebar_opens_with():
+    import blf  # which bpy brings
+
     blf.size(0, 11)
     for parameter in parameters.SOCKETS:
         width = blf.dimensions(0, parameter.label or parameter.name)[0]
