@@ -40,9 +40,6 @@ PRESET_PROPERTY = "nd_preset"
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 """Of linear red, green and blue (ITU-R BT.709)."""
 
-NODE_WIDTH = 320.0
-"""Of the group's node: the longest name of a socket beside its value."""
-
 _looked_up: dict[tuple, Any] | None = None
 """What functions of :func:`looked_up_once` returned in the outermost block of :func:`unchanged_nodes`."""
 
@@ -122,7 +119,7 @@ def _new_node(tree: bpy.types.NodeTree, group: bpy.types.NodeTree) -> bpy.types.
     node = tree.nodes.new("ShaderNodeGroup")
     node.node_tree = group
     node.name = GROUP_NAME
-    node.width = NODE_WIDTH
+    node.width = node_group.NODE_WIDTH
     node_group.hide_internals(node)
     return node
 
@@ -140,7 +137,7 @@ def add_node(material: bpy.types.Material, tree: bpy.types.NodeTree) -> tuple[bp
     output = tree.get_output_node("CYCLES")
     if output is None:
         output = tree.nodes.new("ShaderNodeOutputMaterial")
-        output.location = node.location[0] + NODE_WIDTH + 80.0, node.location[1]
+        output.location = node.location[0] + node_group.NODE_WIDTH + 80.0, node.location[1]
     sources = [link.from_node for link in output.inputs["Surface"].links]
     if any(not _is_bare_principled(source) for source in sources):
         return node, False

@@ -37,6 +37,9 @@ MASK_FILE = "volume_mask.osl"
 MATERIAL_SLOTS = 8
 """As in osl/medium.h: slots of an object in which neighbours look for its dielectric."""
 
+NODE_WIDTH = 320
+"""Of the group's node: the longest name of a socket beside its value."""
+
 CYCLES_OUTPUT = "Surface"
 VOLUME_OUTPUT = "Volume"
 PREVIEW_OUTPUT = "Preview"
@@ -209,6 +212,7 @@ def ensure_group() -> bpy.types.NodeTree:
     tree = bpy.data.node_groups.new(GROUP_NAME, "ShaderNodeTree")
     tree[VERSION_PROPERTY] = MATERIAL_VERSION
     tree.description = "A dielectric that knows the media it touches"
+    tree.default_group_node_width = NODE_WIDTH
     _add_sockets(tree)
     _add_nodes(tree, scripts)
     return tree
