@@ -38,8 +38,8 @@ def through(values: dict) -> np.ndarray:
 
 
 def noise(values: dict) -> np.ndarray:
-    """Standard error of a slab's mean over `through`, by colour, if samples are independent: every sample shows what is behind or
-    nothing, and one that is split into colours shows one wavelength's share of white.
+    """Standard error of a slab's mean over `through`, by colour, if samples are independent: every sample shows what is
+    behind or nothing, and one that is split into colours shows one wavelength's share of white.
     """
     face = ((values["ior"] - 1.0) / (values["ior"] + 1.0)) ** 2
     share = (1.0 - face) / (1.0 + face)
@@ -87,8 +87,8 @@ def test_light_through_every_preset_is_what_fresnel_and_beer_lambert_say(slabs):
 
 @pytest.mark.parametrize("key", FILMS)
 def test_a_film_reflects_no_less_and_no_more_than_its_two_faces_can_together(slabs, key):
-    """Airy (1833): whatever the film's thickness, the amplitudes of its faces add up or take away from each other. Both faces of
-    the slab carry it.
+    """Airy (1833): whatever the film's thickness, the amplitudes of its faces add up or take away from each other. Both
+    faces of the slab carry it.
     """
     values, mean = slabs[key]
     film, inside = values["thin_film_ior"], values["ior"]
@@ -103,6 +103,8 @@ def test_a_film_reflects_no_less_and_no_more_than_its_two_faces_can_together(sla
 
 @pytest.mark.parametrize("key", ROUGH)
 def test_a_rough_slab_lets_most_light_through(slabs, key):
-    """GGX of single scattering loses up to a fifth here; Multiscatter GGX, which makes up for the loss by tables, adds up to 3 %."""
+    """GGX of single scattering loses up to a fifth here; Multiscatter GGX makes up for the loss by Cycles' tables, which add
+    up to 3 %.
+    """
     _, mean = slabs[key]
     assert np.all((mean > 0.8) & (mean < 1.03))

@@ -99,7 +99,7 @@ CATALOGUES = [
 ]
 
 # Gemmology (Webster, 1994, Gems; Read, 2005, Gemmology): range of the index, and fire. Fire is printed to 0.001; moissanite's
-# is given from 0.090 to 0.104 and measured here at 0.112.
+# as 0.104, and the measurement that the preset is of has 0.112.
 GEMS = [
     ("amethyst", (1.544, 1.553), (0.013, 0.013)),
     ("aquamarine", (1.567, 1.590), (0.014, 0.014)),
@@ -110,7 +110,7 @@ GEMS = [
     ("emerald", (1.565, 1.602), (0.014, 0.014)),
     ("fluorite", (1.433, 1.435), (0.007, 0.008)),
     ("garnet", (1.76, 1.83), (0.024, 0.024)),
-    ("moissanite", (2.647, 2.691), (0.090, 0.113)),
+    ("moissanite", (2.647, 2.691), (0.104, 0.112)),
     ("peridot", (1.654, 1.690), (0.020, 0.020)),
     ("quartz", (1.544, 1.553), (0.013, 0.013)),
     ("ruby", (1.762, 1.774), (0.018, 0.018)),
@@ -291,10 +291,11 @@ def test_the_library_holds_what_artists_ask_for_by_different_names():
     assert len(library) >= 60
     assert len({preset.name for preset in library}) == len({preset.key for preset in library}) == len(library)
     words = {word for preset in library for word in (preset.name.lower(), *preset.tags)}
-    asked = "wine glass, crystal, window, pyrex, beer bottle, sea, ocean, lake, swimming pool, ice cube, iceberg, tea, coffee, coke, "
-    asked += "lager, stout, red wine, whiskey, vodka, juice, honey, syrup, oil, soap, perfume, alcohol, glycerin, diamond, ruby, "
-    asked += "sapphire, emerald, amethyst, topaz, aquamarine, citrine, garnet, peridot, moissanite, zirconia, quartz, plexiglass, "
-    asked += "polycarbonate, water bottle, epoxy resin, silicone, amber, bubble, soap film, frosted"
+    asked = "wine glass, crystal, window, pyrex, beer bottle, sea, ocean, lake, swimming pool, ice cube, iceberg, tea, "
+    asked += "coffee, coke, lager, stout, red wine, whiskey, vodka, juice, honey, syrup, oil, soap, perfume, alcohol, "
+    asked += "glycerin, diamond, ruby, sapphire, emerald, amethyst, topaz, aquamarine, citrine, garnet, peridot, "
+    asked += "moissanite, zirconia, quartz, plexiglass, polycarbonate, water bottle, epoxy resin, silicone, amber, "
+    asked += "bubble, soap film, frosted"
     lost = [word for word in asked.split(", ") if not any(word in each for each in words)]
     assert lost == []
 

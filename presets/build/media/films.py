@@ -1,7 +1,8 @@
 """Bubbles and films."""
 
-from ..indices import Abbe, Sellmeier
+from ..indices import Abbe
 from ..recipe import BUBBLE, LIQUID, Recipe
+from .water import FRESH
 
 GROUP = "Bubbles and Films"
 
@@ -53,7 +54,7 @@ MEDIA = (
         "Water: Daimon and Masumura (2007), Applied Optics 46(18). Film: mineral oil of n 1.46 (1.46 to 1.48 by "
         "makers' sheets), thick enough for rainbow colours by the Bonn Agreement's (2009) Oil Appearance Code, 0.3 "
         "to 5 micrometres; 350 nm here.",
-        Sellmeier((0.597697292, 0.164183063, 0.112898603), (0.00540490195, 0.0204680679, 10.6838606)),
+        FRESH,
         priority=LIQUID,
         others=(("thin_film_thickness", 350.0), ("thin_film_ior", 1.46)),
     ),

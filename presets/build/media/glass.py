@@ -96,20 +96,20 @@ MEDIA = (
         "Frosted Glass",
         "ground, etched, satin, sandblasted, milky, bathroom, lamp",
         "Ground glass. The frost is the roughness of its surface, not scattering inside.",
-        f"{RUBIN} Roughness: alpha of 0.394 of GGX (roughness is its square root), which Walter, Marschner, Li and "
-        "Torrance (2007), Microfacet models for refraction through rough surfaces, fitted to ground glass.",
+        f"{RUBIN} Roughness: an alpha of GGX of about 0.4 (roughness is its square root), as Walter, Marschner, Li "
+        "and Torrance (2007), Microfacet models for refraction through rough surfaces, fitted to ground glass.",
         0.0,
-        others=(("roughness", 0.628), ("distribution", "GGX")),
+        others=(("roughness", 0.63), ("distribution", "GGX")),
     ),
     _glass(
         "antiglare_glass",
         "Anti-glare Glass",
         "picture frame, screen, matt, satin",
         "Glass with a slightly matt surface, as over pictures and screens.",
-        f"{RUBIN} Roughness: alpha of 0.027 of GGX (roughness is its square root), which Walter, Marschner, Li and "
-        "Torrance (2007), Microfacet models for refraction through rough surfaces, fitted to antiglare glass.",
+        f"{RUBIN} Roughness: an alpha of GGX of about 0.03 (roughness is its square root), as Walter, Marschner, Li "
+        "and Torrance (2007), Microfacet models for refraction through rough surfaces, fitted to antiglare glass.",
         0.0,
-        others=(("roughness", 0.164), ("distribution", "GGX")),
+        others=(("roughness", 0.17), ("distribution", "GGX")),
     ),
     _glass(
         "crystal",

@@ -6,6 +6,8 @@ from ..recipe import Recipe
 
 GROUP = "Laboratory Glass"
 
+BK7 = Sellmeier((1.03961212, 0.231792344, 1.01046945), (0.00600069867, 0.0200179144, 103.560653))
+
 
 def _schott(key: str, glass: str, description: str, tags: str, index: Sellmeier, **keywords) -> Recipe:
     """A glass whose index and absorption are those of Schott's catalogue."""
@@ -32,7 +34,7 @@ MEDIA = (
         "lens, prism, optical, schott, crown",
         "Borosilicate crown glass, the most common glass for lenses, prisms and windows of instruments.",
         "Schott (2017), data sheet N-BK7, Sellmeier form; index against air.",
-        Sellmeier((1.03961212, 0.231792344, 1.01046945), (0.00600069867, 0.0200179144, 103.560653)),
+        BK7,
     ),
     Recipe(
         "sf11",
@@ -107,7 +109,7 @@ MEDIA = (
         "BK7 with a quarter wave of magnesium fluoride against reflections, whose rest is purple.",
         "Glass as BK7: Schott (2017), data sheet N-BK7. Film: magnesium fluoride of index 1.38 (Dodge, 1984, Applied "
         "Optics 23, ordinary ray at 550 nm), a quarter of 550 nm thick.",
-        Sellmeier((1.03961212, 0.231792344, 1.01046945), (0.00600069867, 0.0200179144, 103.560653)),
+        BK7,
         others=(("thin_film_thickness", 99.6), ("thin_film_ior", 1.38)),
     ),
 )

@@ -1,7 +1,7 @@
 """Syrups, oils, alcohols and other liquids of the household."""
 
 from ..absorption import Band, Caramel, Edge
-from ..indices import Abbe, Drink, Page, Sellmeier
+from ..indices import Abbe, Drink, Index, Page, Sellmeier
 from ..recipe import FLOATING, LIQUID, Recipe
 
 GROUP = "Liquids"
@@ -11,10 +11,12 @@ REGULATION = "(Regulation (EU) 231/2012)"
 # Pheophytin a: its bands relative to that at 670 nm (Lichtenthaler, 1987, Methods in Enzymology 148).
 PHEOPHYTIN = ((411.0, 2.1, 2700.0), (505.0, 0.23, 900.0), (535.0, 0.19, 900.0), (610.0, 0.15, 700.0), (670.0, 1.0, 500.0))
 # Lutein, relative to its absorbance at 470 nm.
-LUTEIN = ((424.0, 0.72, 1500.0), (448.0, 1.0, 1300.0), (477.0, 0.86, 1000.0))
+LUTEIN = ((424.0, 0.87, 1500.0), (448.0, 1.21, 1300.0), (477.0, 1.04, 1000.0))
 
 
-def _liquid(key: str, name: str, tags: str, description: str, source: str, depth: float, index, *absorption, **keywords) -> Recipe:
+def _liquid(
+    key: str, name: str, tags: str, description: str, source: str, depth: float, index: Index, *absorption, **keywords
+) -> Recipe:
     keywords.setdefault("priority", LIQUID)
     return Recipe(key, name, GROUP, tags, description, source, index, depth=depth, absorption=absorption, **keywords)
 
@@ -77,7 +79,7 @@ MEDIA = (
         "olive_oil",
         "Olive Oil",
         "oil, cooking, salad, green, vinaigrette, food",
-        "Virgin olive oil, yellow green. It wins over water, on which it floats.",
+        "Virgin olive oil, golden with a touch of green. It wins over water, on which it floats.",
         "Index: 1.4690 at 20 C (Codex Alimentarius 33-1981: 1.4677 to 1.4705); no published Abbe number: 55. "
         "Absorption: 8 mg/kg of pheophytin and 3 mg/kg of carotenoids, as in a mild oil, by the extinctions of "
         "Minguez-Mosquera et al. (1991), Journal of the American Oil Chemists' Society 68: 1 % absorbs 613 at 670 nm "
