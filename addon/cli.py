@@ -216,9 +216,10 @@ def _update(options: argparse.Namespace) -> None:
 
 
 def _presets(options: argparse.Namespace) -> None:
-    for key in preset_names():
-        preset = load_preset(key)
-        print(f"{key:12} {preset.parameters['ior']:<8} {preset.description}")
+    presets = [load_preset(key) for key in preset_names()]
+    width = max(len(preset.key) for preset in presets)
+    for preset in presets:
+        print(f"{preset.key:{width}} {preset.parameters['ior']:<9} {preset.description}")
 
 
 def _bake(options: argparse.Namespace) -> None:

@@ -253,14 +253,6 @@ def test_preparing_bakes_tables_for_the_files_own_working_space_again():
     assert np.array_equal(material_table(material), spectral_table(gamut="REC2020"))
 
 
-def test_every_preset_has_a_source_and_loads():
-    assert {"water", "ice", "glass", "air_bubble"} <= set(nd.preset_names())
-    for key in nd.preset_names():
-        preset = presets.load_preset(key)
-        assert preset.source and preset.description
-        nd.new_material(preset.name, preset=key)
-
-
 def test_presets_work_together_without_setting_priorities():
     """A bubble wins over glass, glass over ice, ice over water."""
     order = [presets.load_preset(key).parameters["priority"] for key in ("air_bubble", "glass", "ice", "water")]
