@@ -1,49 +1,39 @@
-"""Panels: a scene's media in winning order, and what keeps them from rendering."""
+"""Panels of the active medium, and of the scene's lamps."""
 
 from __future__ import annotations
-
-import textwrap
 
 import bpy
 import bpy.utils.previews
 import numpy as np
 
-from .analysis import last_found
-from .compatibility import achromatic_reason, blender_note, blender_problem, settings_problem, shows_front_ior
+from .compatibility import achromatic_reason, shows_front_ior
 from .dispersion import LINE_C, LINE_D, LINE_F, abbe_number, material_ior
+from .drawing import ObjectProperties as _ObjectProperties
+from .drawing import Sidebar as _Sidebar
+from .drawing import draw_alert, draw_text
 from .lights import LOBE, NOTHING, RAYS, light_carriers
 from .materials import (
     get_parameter,
     material_table,
-    medium_material,
-    parameter_socket,
     rendered_node,
     usable_spectrum_settings,
 )
-from .media import get_priority, own_priority
-from .media_list import listed_media
 from .operators import (
     LAMP_CARRIERS,
     SELLMEIER_REMEDY,
     AddPasses,
-    AssignPreset,
-    ClearAnalysis,
     DispersionModel,
     LampCarrier,
-    Prepare,
-    PriorityMove,
-    PriorityOwn,
     SellmeierIor,
     ShadowCaustics,
     Spectrum,
-    UpdateMaterials,
     active_medium,
     coefficients_ior,
 )
-from .parameters import BY_KEYWORD, DISPERSION_MODELS, PRIORITY_PROPERTY
+from .parameters import BY_KEYWORD, DISPERSION_MODELS
+from .scene_panels import ObjectPanel, SidebarPanel
 from .spectra import DISTRIBUTIONS, GAMUTS, preview
 from .spectral_images import digest
-from .versions import outdated_materials, version_problems
 
 MODEL_SOCKETS = {
     "ABBE": ("ior", "abbe"),
@@ -73,163 +63,6 @@ MAX_PICTURES = 32
 
 _pictures: bpy.utils.previews.ImagePreviewCollection | None = None
 """Pictures of spectral tables by the tables' digests, while the extension is registered."""
-
-
-class MediaList(bpy.types.UIList):
-    """The scene's media, the one that wins over all others on top."""
-
-    bl_idname = "NESTED_DIELECTRIC_UL_media"
-
-    def filter_items(self, context: bpy.types.Context, data: bpy.types.Scene, property: str) -> tuple[list, list]:
-        objects = list(getattr(data, property))
-        ordered = list(listed_media(data).own)
-        found = set(ordered)
-        ordered += [obj for obj in objects if obj not in found]
-        place = {obj: index for index, obj in enumerate(ordered)}
-        shown = bpy.types.UI_UL_list.filter_items_by_name(self.filter_name, self.bitflag_filter_item, objects)
-        shown = shown or [self.bitflag_filter_item] * len(objects)
-        flags = [flag if obj in found else 0 for flag, obj in zip(shown, objects)]
-        return flags, [place[obj] for obj in objects]
-
-    def draw_filter(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
-        layout.prop(self, "filter_name", text="", icon="VIEWZOOM")
-
-    def draw_item(self, context, layout, data, item, icon, active_data, active_property) -> None:
-        draw_medium(layout, item, icon)
-
-
-def get_active(scene: bpy.types.Scene) -> int:
-    """The row of the active object, so that the list follows every selection."""
-    active = bpy.context.view_layer.objects.active
-    return -1 if active is None else scene.objects.find(active.name)
-
-
-def set_active(scene: bpy.types.Scene, index: int) -> None:
-    """Make the object of a row the active and only selected one; as in the Outliner, no other than in Object Mode."""
-    layer = bpy.context.view_layer
-    obj = scene.objects[index]
-    active = layer.objects.active
-    if layer.objects.get(obj.name) != obj or (active is not None and active.mode != "OBJECT"):
-        return
-    for other in layer.objects.selected:
-        other.select_set(False, view_layer=layer)
-    obj.select_set(True, view_layer=layer)
-    layer.objects.active = obj
-
-
-def draw_medium(layout: bpy.types.UILayout, obj: bpy.types.Object, icon: int) -> None:
-    """One row: the object, its priority and whose priority that is."""
-    columns = layout.split(factor=0.55, align=True)
-    columns.enabled = obj.is_editable
-    columns.prop(obj, "name", text="", emboss=False, icon_value=icon)
-    draw_priority(columns.row(align=True), obj)
-
-
-def draw_priority(layout: bpy.types.UILayout, obj: bpy.types.Object, text: str = "") -> None:
-    """An object's own priority to edit, or its material's to read, marked as such, and the button between the two."""
-    own = own_priority(obj) is not None
-    if own:
-        layout.prop(obj, f'["{PRIORITY_PROPERTY}"]', text=text)
-    else:
-        value = layout.row(align=True)
-        value.active = False
-        odd = PRIORITY_PROPERTY in obj
-        value.alert = odd
-        value.label(text=f"{text} {get_priority(obj)}", icon="ERROR" if odd else "MATERIAL")
-    toggle = layout.operator(PriorityOwn.bl_idname, text="", icon="PINNED" if own else "UNPINNED", depress=own)
-    toggle.name = obj.name
-
-
-def draw(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Everything a panel shows, for the Object properties and the 3D view alike."""
-    draw_problem(layout, context)
-    draw_media(layout, context)
-    draw_active(layout, context)
-
-
-def draw_problem(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Why nothing would render as it should, in as many lines as it takes, and the button that mends the scene."""
-    problem = blender_problem() or settings_problem(context.scene)
-    note = blender_note()
-    if problem:
-        draw_alert(layout, context, problem)
-    elif note:
-        draw_text(layout, context, note, "INFO")
-    draw_versions(layout, context)
-    layout.operator(Prepare.bl_idname, icon="CHECKMARK")
-
-
-def draw_versions(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Materials of another version and copies, and the button that updates them; what cannot be updated here."""
-    outdated = outdated_materials()
-    if outdated:
-        text = f"From another version, or a copy: {', '.join(outdated)}"
-        draw_text(layout, context, textwrap.shorten(text, 200, placeholder=" ..."), "FILE_REFRESH")
-        layout.operator(UpdateMaterials.bl_idname, icon="FILE_REFRESH")
-    for problem in version_problems():
-        draw_alert(layout, context, str(problem))
-
-
-def draw_alert(layout: bpy.types.UILayout, context: bpy.types.Context, text: str) -> None:
-    """A problem, in red."""
-    lines = layout.column()
-    lines.alert = True
-    draw_text(lines, context, text, "ERROR")
-
-
-def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
-    """A text in as many lines as the region's width makes of it, the first with an icon."""
-    lines = layout.column(align=True)
-    characters = int(context.region.width / context.preferences.system.ui_scale / 8.0)
-    for index, line in enumerate(textwrap.wrap(text[0].upper() + text[1:], max(characters, 20))):
-        lines.label(text=line, icon="BLANK1" if index else icon)
-
-
-def draw_media(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """The scene's own objects as a list to select and move in, then those that instances bring in."""
-    scene = context.scene
-    row = layout.row()
-    row.template_list(
-        MediaList.bl_idname, "", scene, "objects", scene, "nested_dielectric_active", rows=4, sort_lock=True
-    )
-    buttons = row.column(align=True)
-    buttons.enabled = context.object is not None and medium_material(context.object) is not None
-    for direction, icon in (("UP", "TRIA_UP"), ("DOWN", "TRIA_DOWN")):
-        buttons.operator(PriorityMove.bl_idname, text="", icon=icon).direction = direction
-
-    instanced = listed_media(scene).instanced
-    if instanced:
-        rows = layout.box().column(align=True)
-        rows.label(text="In Instanced Collections", icon="OUTLINER_OB_GROUP_INSTANCE")
-        for obj in instanced:
-            draw_medium(rows, obj, layout.icon(obj))
-
-
-def draw_active(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """The active object's material and priority, and the presets to give it another."""
-    obj = context.object
-    material = medium_material(obj) if obj is not None else None
-    if material is not None:
-        column = layout.column(align=True)
-        column.label(text=f"{obj.name}: {material.name}", icon="MATERIAL")
-        socket = parameter_socket(material, "Priority")
-        if socket is not None:
-            column.prop(socket, "default_value", text="Priority of Material")
-        draw_priority(column.row(align=True), obj, text="Priority")
-    layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Assign Preset", icon="MATERIAL")
-
-
-def draw_analysis(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Which media spare rays, which do not, and why."""
-    found = last_found(context.scene)
-    if found is None:
-        draw_text(
-            layout, context, "All media ask the scene what surrounds them; Prepare Scene looks at it beforehand", "INFO"
-        )
-    else:
-        for line in str(found).splitlines():
-            draw_text(layout, context, line, "INFO")
-    layout.operator(ClearAnalysis.bl_idname, icon="X")
 
 
 def draw_dispersion(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -382,32 +215,6 @@ def close_pictures() -> None:
     _pictures = None
 
 
-class _ObjectProperties:
-    """Where a panel of the Object properties stands."""
-
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    bl_context = "object"
-    bl_options = {"DEFAULT_CLOSED"}
-
-
-class _Sidebar:
-    """Where a panel of the 3D view's sidebar stands."""
-
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Nested Dielectric"
-
-
-class _MediaPanel:
-    """What both panels show."""
-
-    bl_label = "Nested Dielectric"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        draw(self.layout, context)
-
-
 class _ActiveMediumPanel:
     """Shown while the active object is a medium."""
 
@@ -436,12 +243,6 @@ class _SpectrumPanel(_ActiveMediumPanel):
         draw_spectrum(self.layout, context)
 
 
-class ObjectPanel(_MediaPanel, _ObjectProperties, bpy.types.Panel):
-    """Media of the scene, in the Object properties."""
-
-    bl_idname = "NESTED_DIELECTRIC_PT_object"
-
-
 class ObjectDispersionPanel(_DispersionPanel, _ObjectProperties, bpy.types.Panel):
     """The active medium's dispersion, in the Object properties."""
 
@@ -454,12 +255,6 @@ class ObjectSpectrumPanel(_SpectrumPanel, _ObjectProperties, bpy.types.Panel):
 
     bl_idname = "NESTED_DIELECTRIC_PT_object_spectrum"
     bl_parent_id = ObjectDispersionPanel.bl_idname
-
-
-class SidebarPanel(_MediaPanel, _Sidebar, bpy.types.Panel):
-    """Media of the scene, in the sidebar of the 3D view."""
-
-    bl_idname = "NESTED_DIELECTRIC_PT_sidebar"
 
 
 class SidebarDispersionPanel(_DispersionPanel, _Sidebar, bpy.types.Panel):
@@ -488,26 +283,10 @@ class SidebarLampsPanel(_Sidebar, bpy.types.Panel):
         draw_lamps(self.layout, context)
 
 
-class SidebarAnalysisPanel(_Sidebar, bpy.types.Panel):
-    """What the media know of each other, in the sidebar of the 3D view."""
-
-    bl_idname = "NESTED_DIELECTRIC_PT_sidebar_analysis"
-    bl_parent_id = SidebarPanel.bl_idname
-    bl_label = "Scene Analysis"
-    bl_options = {"DEFAULT_CLOSED"}
-
-    def draw(self, context: bpy.types.Context) -> None:
-        draw_analysis(self.layout, context)
-
-
 CLASSES = (
-    MediaList,
-    ObjectPanel,
     ObjectDispersionPanel,
     ObjectSpectrumPanel,
-    SidebarPanel,
     SidebarDispersionPanel,
     SidebarSpectrumPanel,
     SidebarLampsPanel,
-    SidebarAnalysisPanel,
 )

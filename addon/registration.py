@@ -7,7 +7,18 @@ from contextlib import ExitStack
 
 import bpy
 
-from . import live, media_list, operators, panels, versions
+from . import (
+    live,
+    media_list,
+    media_rows,
+    notices,
+    operators,
+    panels,
+    preparation_operators,
+    priority_operators,
+    scene_panels,
+    versions,
+)
 from .checks import material_problems
 from .compatibility import blender_note, blender_problem, settings_problem
 from .media import media
@@ -16,6 +27,16 @@ _CHANGES = tuple(
     getattr(bpy.app.handlers, f"{when}_post") for when in ("depsgraph_update", "frame_change", "undo", "redo", "load")
 )
 """Handlers of all that may change which media a scene has."""
+
+CLASSES = (
+    media_rows.Place,
+    *operators.CLASSES,
+    *priority_operators.CLASSES,
+    *preparation_operators.CLASSES,
+    *scene_panels.CLASSES,
+    *panels.CLASSES,
+    *scene_panels.LAST_CLASSES,
+)
 
 _registered: ExitStack | None = None
 """How to take out what :func:`register` put in; None while nothing is in."""
@@ -30,7 +51,7 @@ def register() -> None:
     if _registered is not None:
         return
     with ExitStack() as undo:
-        for cls in (*operators.CLASSES, *panels.CLASSES):
+        for cls in CLASSES:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
 
@@ -38,9 +59,17 @@ def register() -> None:
         undo.callback(panels.close_pictures)
 
         bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
-            name="Active Medium", get=panels.get_active, set=panels.set_active, options=set()
+            name="Active Medium", get=media_rows.get_active, set=media_rows.set_active, options=set()
         )
         undo.callback(delattr, bpy.types.Scene, "nested_dielectric_active")
+        bpy.types.WindowManager.nested_dielectric_places = bpy.props.CollectionProperty(type=media_rows.Place)
+        undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_places")
+        undo.callback(media_rows.forget_wanted)
+
+        for name, draw in notices.PLACES:
+            place = getattr(bpy.types, name)
+            place.append(draw)
+            undo.callback(place.remove, draw)
 
         bpy.types.VIEW3D_MT_object.append(operators.draw_preset_menu)
         undo.callback(bpy.types.VIEW3D_MT_object.remove, operators.draw_preset_menu)

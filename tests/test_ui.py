@@ -1,15 +1,15 @@
 """Operators, panels and registration, as Blender's buttons call them."""
 
-from types import SimpleNamespace
-
 import bpy
 import numpy as np
 import pytest
 
 import nested_dielectric as nd
 from nested_dielectric import lights, materials, media, node_group, operators, panels, registration, spectra
+from nested_dielectric import preparation_operators, scene_panels
 from nested_dielectric.parameters import BY_KEYWORD
 from nested_dielectric.passes import compositors
+from layouts import draw, labels_and_operators, texts
 
 pytestmark = pytest.mark.quick
 
@@ -49,67 +49,9 @@ def add_dispersive(preset="bk7", **keywords):
     return material, materials.dielectric_node(material)
 
 
-class Layout:
-    """A layout of Blender's that writes down what is drawn into it."""
-
-    def __init__(self, layout, drawn):
-        self.__dict__.update(layout=layout, drawn=drawn)
-
-    def __setattr__(self, name, value):
-        setattr(self.layout, name, value)
-
-    def __getattr__(self, name):
-        def call(*arguments, **keywords):
-            self.drawn.append((name, arguments, keywords))
-            result = getattr(self.layout, name)(*arguments, **keywords)
-            return Layout(result, self.drawn) if isinstance(result, bpy.types.UILayout) else result
-
-        return call
-
-
-@pytest.fixture
-def draw(capfd):
-    """Draw a panel as Blender would, in a region of some width; what it draws, as in :class:`Layout`."""
-
-    def draw(panel, width=220):
-        context = SimpleNamespace(
-            scene=bpy.context.scene,
-            object=bpy.context.object,
-            region=SimpleNamespace(width=width),
-            preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
-        )
-        drawn = []
-        capfd.readouterr()
-        area = bpy.context.window.screen.areas[0]
-        with bpy.context.temp_override(area=area, region=area.regions[0]):
-            layout = bpy.context.window_manager.popover_begin__internal(ui_units_x=10).layout
-            panel.draw(SimpleNamespace(layout=Layout(layout, drawn)), context)
-        complaints = [line for line in "".join(capfd.readouterr()).splitlines() if "no icon for icon ID" not in line]
-        assert not complaints
-        return drawn
-
-    return draw
-
-
-def texts(drawn):
-    """All labels of a panel as one text, its properties' names, and its buttons' names with what they look like."""
-    by_kind = {
-        kind: {keywords["text"]: keywords for name, _, keywords in drawn if name == kind}
-        for kind in ("prop", "operator")
-    }
-    labels = " ".join(keywords["text"] for name, _, keywords in drawn if name == "label")
-    return labels, by_kind["prop"].keys(), by_kind["operator"]
-
-
-def labels_and_operators(drawn):
-    """All labels of a panel as one text, and which operators it offers."""
-    labels = " ".join(keywords["text"] for name, _, keywords in drawn if name == "label")
-    return labels, [arguments[0] for name, arguments, _ in drawn if name == "operator"]
-
-
 def in_blender():
     """What the extension has put into Blender."""
-    classes = {cls for cls in (*operators.CLASSES, *panels.CLASSES) if cls.is_registered}
+    classes = {cls for cls in registration.CLASSES if cls.is_registered}
     menus = bpy.types.VIEW3D_MT_object._dyn_ui_initialize().count(operators.draw_preset_menu)
     handlers = bpy.app.handlers.render_init[:].count(registration.warn_before_render)
     pictures = len(bpy.utils.previews._uuid_open)
@@ -119,7 +61,7 @@ def in_blender():
 def test_registering_twice_changes_nothing():
     once = in_blender()
     nd.register()
-    assert in_blender() == once == (len(operators.CLASSES) + len(panels.CLASSES), 1, 1, True, 1)
+    assert in_blender() == once == (len(registration.CLASSES), 1, 1, True, 1)
 
 
 def test_unregistering_leaves_no_classes_behind():
@@ -128,7 +70,7 @@ def test_unregistering_leaves_no_classes_behind():
     assert not [name for name in dir(bpy.types) if name.upper().startswith("NESTED_DIELECTRIC")]
     nd.unregister()
     nd.register()
-    assert in_blender() == (len(operators.CLASSES) + len(panels.CLASSES), 1, 1, True, 1)
+    assert in_blender() == (len(registration.CLASSES), 1, 1, True, 1)
 
 
 def test_a_registration_that_fails_raises_and_leaves_nothing_behind(monkeypatch):
@@ -146,7 +88,7 @@ def test_an_unsupported_blender_still_gets_the_panels_and_says_why(monkeypatch, 
     nd.unregister()
     monkeypatch.setattr(registration, "blender_problem", lambda: "this Blender cannot")
     nd.register()
-    assert in_blender()[0] == len(operators.CLASSES) + len(panels.CLASSES)
+    assert in_blender()[0] == len(registration.CLASSES)
     assert capsys.readouterr().err == "Nested Dielectric: this Blender cannot\n"
 
 
@@ -174,7 +116,8 @@ def test_presets_are_greyed_out_where_nothing_can_be_a_medium():
 
 def test_operators_are_greyed_out_in_a_blender_that_cannot_render_media(monkeypatch):
     add_cube("A")
-    monkeypatch.setattr(operators, "blender_problem", lambda: "this Blender cannot")
+    for module in (operators, preparation_operators):
+        monkeypatch.setattr(module, "blender_problem", lambda: "this Blender cannot")
     assert not bpy.ops.nested_dielectric.assign_preset.poll()
     assert not bpy.ops.nested_dielectric.prepare.poll()
 
@@ -193,86 +136,11 @@ def test_undo_takes_a_preset_and_a_priority_back():
     assert priorities() == {"A": 30}
 
 
-def test_a_medium_moves_up_and_down_the_winning_order():
-    add_media(A=1, B=2, C=3)
-    bpy.ops.nested_dielectric.priority_move(name="C", direction="UP")
-    assert priorities() == {"A": 1, "C": 2, "B": 3}
-    bpy.ops.nested_dielectric.priority_move(name="A", direction="DOWN")
-    assert priorities() == {"C": 2, "A": 3, "B": 4}
-
-
-def test_the_first_medium_cannot_move_further_up():
-    add_media(A=1, B=2)
-    assert bpy.ops.nested_dielectric.priority_move(name="A", direction="UP") == {"CANCELLED"}
-
-
-def test_without_a_name_the_active_object_moves():
-    add_media(A=1, B=2)
-    bpy.ops.nested_dielectric.priority_move(direction="UP")
-    assert priorities() == {"B": 0, "A": 1}
-
-
-def test_an_own_priority_starts_at_the_one_in_force_and_returns_to_that_of_the_material():
-    (water,) = add_media(A=None)
-    bpy.ops.nested_dielectric.priority_own(name="A")
-    assert media.own_priority(water) == 30
-    nd.set_priority(water, 7)
-    bpy.ops.nested_dielectric.priority_own(name="A")
-    assert media.own_priority(water) is None
-    assert nd.get_priority(water) == 30
-
-
 def test_an_object_that_is_no_medium_is_named_in_the_error():
+    add_media(A=1)
     add_cube("Wall")
     with pytest.raises(RuntimeError, match="'Wall' is no medium of scene 'Scene'"):
         bpy.ops.nested_dielectric.priority_own()
-
-
-def test_prepare_scene_reports_changes_and_problems(capfd):
-    bpy.ops.mesh.primitive_plane_add()
-    nd.assign(bpy.context.object, "water")
-    bpy.ops.nested_dielectric.prepare()
-    assert panels.settings_problem(bpy.context.scene) is None
-    output = "".join(capfd.readouterr())
-    assert "Info: Render Engine: BLENDER_EEVEE -> CYCLES" in output
-    assert "Warning: 'Plane' is not closed" in output
-
-
-def test_the_list_shows_the_media_of_a_scene_in_winning_order():
-    add_media(A=3, B=1, C=None, D=2)
-    add_cube("Wall")
-    scene = bpy.context.scene
-
-    def rows(text=""):
-        instance = SimpleNamespace(filter_name=text, bitflag_filter_item=1 << 30)
-        flags, places = panels.MediaList.filter_items(instance, bpy.context, scene, "objects")
-        shown = [(place, obj.name) for obj, flag, place in zip(scene.objects, flags, places) if flag]
-        return [name for _, name in sorted(shown)]
-
-    assert rows() == ["B", "D", "A", "C"]
-    assert rows("D") == ["D"]
-
-
-def test_choosing_a_row_selects_its_object_and_the_list_follows_the_selection():
-    first, second = add_media(A=1, B=2)
-    scene = bpy.context.scene
-    assert scene.objects[scene.nested_dielectric_active] == second
-    scene.nested_dielectric_active = scene.objects.find("A")
-    assert bpy.context.view_layer.objects.active == first
-    assert bpy.context.selected_objects == [first]
-    assert scene.objects[scene.nested_dielectric_active] == first
-
-
-def test_choosing_a_row_outside_the_view_layer_changes_nothing():
-    first, second = add_media(A=1, B=2)
-    scene = bpy.context.scene
-    hidden = bpy.data.collections.new("Excluded")
-    scene.collection.children.link(hidden)
-    scene.collection.objects.unlink(first)
-    hidden.objects.link(first)
-    bpy.context.view_layer.layer_collection.children["Excluded"].exclude = True
-    scene.nested_dielectric_active = scene.objects.find("A")
-    assert bpy.context.view_layer.objects.active == second
 
 
 def test_a_render_that_would_not_show_media_says_why(capsys):
@@ -400,7 +268,7 @@ def test_operators_on_a_material_are_greyed_out_where_there_is_none_to_change(tm
     assert bpy.ops.nested_dielectric.dispersion_model(model="JF") == {"FINISHED"}
 
 
-@pytest.mark.parametrize("panel", [cls for cls in panels.CLASSES if issubclass(cls, bpy.types.Panel)])
+@pytest.mark.parametrize("panel", [cls for cls in registration.CLASSES if issubclass(cls, bpy.types.Panel)])
 @pytest.mark.parametrize("width", [1, 150, 2000])
 def test_panels_draw_in_any_width(draw, panel, width):
     add_dispersive()
@@ -468,23 +336,23 @@ def test_the_panel_offers_the_index_of_the_sellmeier_coefficients_where_ior_is_a
 def test_the_panels_offer_to_update_materials_of_another_version(draw):
     add_media(A=1)
     update = operators.UpdateMaterials.bl_idname
-    for panel in (panels.SidebarPanel, panels.ObjectPanel):
+    for panel in (scene_panels.SidebarPanel, scene_panels.ObjectPanel):
         assert update not in labels_and_operators(draw(panel))[1]
     node = materials.dielectric_node(bpy.data.objects["A"].active_material)
     node.node_tree = node.node_tree.copy()
     node.node_tree[node_group.VERSION_PROPERTY] = 1
-    for panel in (panels.SidebarPanel, panels.ObjectPanel):
+    for panel in (scene_panels.SidebarPanel, scene_panels.ObjectPanel):
         labels, buttons = labels_and_operators(draw(panel))
         assert "From another version, or a copy: Water" in labels and update in buttons
     bpy.ops.nested_dielectric.update_materials()
     assert node_group.group_version(node.node_tree) == node_group.MATERIAL_VERSION
-    assert update not in labels_and_operators(draw(panels.SidebarPanel))[1]
+    assert update not in labels_and_operators(draw(scene_panels.SidebarPanel))[1]
 
 
 def test_the_panels_name_a_material_of_a_newer_version(draw):
     add_media(A=1)
     node_group.find_group()[node_group.VERSION_PROPERTY] = node_group.MATERIAL_VERSION + 1
-    labels, buttons = labels_and_operators(draw(panels.SidebarPanel))
+    labels, buttons = labels_and_operators(draw(scene_panels.SidebarPanel))
     assert "'Water' was made by a newer version" in labels and operators.UpdateMaterials.bl_idname not in buttons
 
 
