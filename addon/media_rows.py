@@ -1,4 +1,5 @@
-"""Which row of a scene's list of media is active: it follows the active object, until a material is chosen.
+"""Which row of a scene's list of media is active: it follows the active object, but for a material that is chosen
+until another object becomes active.
 
 Blender's lists show a collection, so rows have places in one that holds nothing; what stands there is looked up.
 """
@@ -31,7 +32,9 @@ def get_active(scene: bpy.types.Scene) -> int:
     active = bpy.context.view_layer.objects.active
     number = 0 if active is None else active.session_uid
     material, then = _chosen.get(scene.session_uid, (0, 0))
-    if then == number and material in places:
+    if then != number:
+        _chosen.pop(scene.session_uid, None)
+    elif material in places:
         return places[material]
     if number in places:
         return places[number]

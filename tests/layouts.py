@@ -56,7 +56,7 @@ def draw(capfd):
 def texts(drawn):
     """All labels of a panel as one text, its properties' names, and its buttons' names with what they look like."""
     by_kind = {
-        kind: {keywords["text"]: keywords for name, _, keywords in drawn if name == kind}
+        kind: {keywords["text"]: keywords for name, _, keywords in drawn if name == kind and "text" in keywords}
         for kind in ("prop", "operator")
     }
     labels = " ".join(keywords["text"] for name, _, keywords in drawn if name == "label")
