@@ -20,7 +20,7 @@ class Listed:
     """Media of a scene.
 
     :param rows: their places in the winning order.
-    :param problems: what is wrong with materials of the file and with their nodes.
+    :param problems: what is wrong with the scene's materials and their nodes.
     :param parted: number of media whose faces have been moved off others in the same place.
     :param disperses: whether a medium splits light into colours.
     :param places: the index of the row of each object, by the object's number in this session.
@@ -93,7 +93,12 @@ def _look(scene: bpy.types.Scene) -> Listed:
     disperses = bool(dispersing) and any(
         slot.material in dispersing for row in rows for obj in row.objects for slot in obj.material_slots
     )
-    return Listed(rows, tuple(version_problems() + material_problems(scene)), parted, disperses, places)
+    problems = version_problems()
+    if problems:
+        used = {slot.material for row in rows for obj in row.objects for slot in obj.material_slots} - {None}
+        names = {material.name for material in used}
+        problems = [problem for problem in problems if problem.name in names]
+    return Listed(rows, tuple(problems + material_problems(scene)), parted, disperses, places)
 
 
 def listed_lines(scene: bpy.types.Scene) -> Lines:

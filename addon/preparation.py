@@ -98,7 +98,7 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
     :param changed: settings that have been changed before; stays: changes that :func:`put_back` leaves; both are brought up
         to date.
     """
-    set_to = [("render.engine", "CYCLES"), ("cycles.shading_system", True), ("cycles.device", "CPU")]
+    set_to = [(settings.ENGINE, "CYCLES"), ("cycles.shading_system", True), ("cycles.device", "CPU")]
     set_to += [(path, max(least, settings.read(scene, path))) for path, least in settings.AT_LEAST.items()]
     changes = [each for path, value in set_to for each in settings.change(scene, changed, path, value)]
     if update_lights(scene):

@@ -8,6 +8,7 @@ from contextlib import ExitStack
 import bpy
 
 from . import (
+    icons,
     live,
     media_list,
     media_rows,
@@ -55,6 +56,8 @@ def register() -> None:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
 
+        icons.open_icons()
+        undo.callback(icons.close_icons)
         panels.open_pictures()
         undo.callback(panels.close_pictures)
 

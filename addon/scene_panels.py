@@ -9,6 +9,7 @@ import bpy
 from .analysis import last_found
 from .compatibility import blender_note, blender_problem
 from .drawing import ObjectProperties, Sidebar, draw_alert, draw_text
+from .icons import ready_icon
 from .materials import medium_material, parameter_socket, unchanged_nodes
 from .media import get_priority, own_priority
 from .media_list import Line, is_open, listed_lines, listed_media
@@ -24,11 +25,11 @@ from .report import Report, last_report
 from .trees import is_plugged
 from .versions import outdated_materials, version_problems
 
-OPEN_PROBLEMS = 3
+OPEN_PROBLEMS = 1
 """Problems whose remedies are shown before they are asked for."""
 
-NUMBER_WIDTH = 2.2
-"""Of a priority, in Blender's units: four digits."""
+NAME_WIDTH = 0.68
+"""Part of a row that a name takes; the rest holds a priority of four digits at the default width of the sidebar."""
 
 
 class MediaList(bpy.types.UIList):
@@ -47,37 +48,41 @@ class MediaList(bpy.types.UIList):
         layout.prop(self, "filter_name", text="", icon="VIEWZOOM")
 
     def draw_item(self, context, layout, data, item, icon, active_data, active_property, index) -> None:
-        line = listed_lines(context.scene).lines[index]
-        row = layout.row(align=True)
+        lines = listed_lines(context.scene).lines
+        if index >= len(lines):
+            return
+        line = lines[index]
         if isinstance(line.chosen, bpy.types.Material):
-            draw_material(row, line)
+            draw_material(layout, line)
         else:
-            draw_object(row, line, context.scene)
+            draw_object(layout, line, context.scene)
 
 
 def _holds(line: Line, text: str) -> bool:
     return text in line.chosen.name.lower() or any(text in obj.name.lower() for obj in line.row.objects if not line.obj)
 
 
-def draw_material(row: bpy.types.UILayout, line: Line) -> None:
+def draw_material(layout: bpy.types.UILayout, line: Line) -> None:
     """A material: whether its objects are shown, its colour, its name, how many objects rely on it, and its priority."""
+    columns = layout.split(factor=NAME_WIDTH, align=True)
+    row = columns.row(align=True)
     material = line.row.owner
     icon = "DISCLOSURE_TRI_DOWN" if is_open(line.row) else "DISCLOSURE_TRI_RIGHT"
     row.operator(OpenMaterial.bl_idname, text="", icon=icon, emboss=False).number = material.session_uid
     swatch = row.row(align=True)
-    swatch.ui_units_x = 0.9
+    swatch.ui_units_x = 0.7
     colour = _socket(material, "Transmittance")
     if colour is not None:
         swatch.prop(colour, "default_value", text="")
     else:
         swatch.prop(material, "diffuse_color", text="")
+    row.separator(factor=0.4)
     row.label(text=f"{material.name} ({len(line.row.objects)})")
-    number = _number_column(row)
     priority = _socket(material, "Priority")
     if priority is not None:
-        number.prop(priority, "default_value", text="")
+        columns.prop(priority, "default_value", text="")
     else:
-        number.label(text=str(line.row.priority), icon="NODETREE")
+        columns.label(text=str(line.row.priority), icon="NODETREE")
 
 
 def _socket(material: bpy.types.Material, name: str) -> bpy.types.NodeSocket | None:
@@ -87,24 +92,21 @@ def _socket(material: bpy.types.Material, name: str) -> bpy.types.NodeSocket | N
     return socket if socket is not None and not socket.is_linked else parameter_socket(material, name)
 
 
-def draw_object(row: bpy.types.UILayout, line: Line, scene: bpy.types.Scene) -> None:
+def draw_object(layout: bpy.types.UILayout, line: Line, scene: bpy.types.Scene) -> None:
     """An object: its name, and its own priority or the button that gives it one."""
     obj = line.chosen
     is_here = scene.objects.get(obj.name) == obj
-    names = row.row(align=True)
-    names.active = is_here
+    icon = "OBJECT_DATA" if is_here else "OUTLINER_OB_GROUP_INSTANCE"
+    columns = layout.split(factor=NAME_WIDTH, align=True) if line.row.is_own else layout.row(align=True)
+    names = columns.row(align=True)
     if not line.row.is_own:
         names.label(text="", icon="BLANK1")
-    names.prop(obj, "name", text="", emboss=False, icon="OBJECT_DATA" if is_here else "OUTLINER_OB_GROUP_INSTANCE")
-    _draw_pin(row, obj)
+    name = names.row(align=True)
+    name.active = is_here
+    name.prop(obj, "name", text="", emboss=False, icon=icon)
+    _draw_pin(names, obj)
     if line.row.is_own:
-        _number_column(row).prop(obj, f'["{PRIORITY_PROPERTY}"]', text="")
-
-
-def _number_column(row: bpy.types.UILayout) -> bpy.types.UILayout:
-    column = row.row(align=True)
-    column.ui_units_x = NUMBER_WIDTH
-    return column
+        columns.prop(obj, f'["{PRIORITY_PROPERTY}"]', text="")
 
 
 def _draw_pin(layout: bpy.types.UILayout, obj: bpy.types.Object) -> None:
@@ -147,7 +149,7 @@ def draw_versions(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         draw_text(layout, context, textwrap.shorten(text, 200, placeholder=" ..."), "FILE_REFRESH")
         layout.operator(UpdateMaterials.bl_idname, icon="FILE_REFRESH")
     shown = render_problem(context.scene)
-    for problem in version_problems():
+    for problem in version_problems() if listed_media(context.scene).rows else ():
         if str(problem) != shown:
             draw_alert(layout, context, str(problem))
 
@@ -172,7 +174,7 @@ def draw_readiness(layout: bpy.types.UILayout, context: bpy.types.Context, repor
         draw_text(layout, context, "Media have come or gone since the last Prepare", "FILE_REFRESH")
         return
     rows = layout.column(align=True)
-    rows.label(text="Ready to Render", icon="STRIP_COLOR_04")
+    rows.label(text="Ready to Render", icon_value=ready_icon())
     old = rows.row()
     old.active = False
     old.label(text="As of the last Prepare", icon="BLANK1")
@@ -213,9 +215,8 @@ def draw_media(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """The scene's media by material, to choose and to move, and what the active row's priority means."""
     scene = context.scene
     make_places(scene)
-    row = layout.row()
     manager = bpy.context.window_manager
-    row.template_list(
+    layout.template_list(
         MediaList.bl_idname,
         "",
         manager,
@@ -226,17 +227,17 @@ def draw_media(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         sort_lock=True,
     )
     line = active_line(scene)
-    buttons = row.column(align=True)
-    buttons.enabled = line is not None
+    if not listed_media(scene).rows:
+        return
+    buttons = layout.row(align=True)
+    arrows = buttons.row(align=True)
+    arrows.enabled = line is not None
     for direction, icon in (("UP", "TRIA_UP"), ("DOWN", "TRIA_DOWN")):
-        buttons.operator(PriorityMove.bl_idname, text="", icon=icon).direction = direction
+        arrows.operator(PriorityMove.bl_idname, text="", icon=icon).direction = direction
+    buttons.operator(SelectObjects.bl_idname)
+    buttons.operator(SpaceOut.bl_idname, text="Space Out")
     if line is not None:
-        text = f"{line.row.owner.name} {in_words(listed_media(scene).rows, line.row)}"
-        draw_text(layout, context, text, "INFO")
-    if listed_media(scene).rows:
-        buttons = layout.row(align=True)
-        buttons.operator(SelectObjects.bl_idname)
-        buttons.operator(SpaceOut.bl_idname, text="Space Out")
+        draw_text(layout, context, f"{line.row.owner.name} {in_words(listed_media(scene).rows, line.row)}", "INFO")
 
 
 def draw_active(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -10,6 +10,8 @@ from typing import Any
 
 import bpy
 
+from .compatibility import engine_name
+
 AT_LEAST = {
     "cycles.max_bounces": 64,
     "cycles.transmission_bounces": 64,
@@ -21,6 +23,7 @@ or glossy one. In a white world the glass of iced water loses 4.7 % of its light
 and 0.08 % at 256.
 """
 
+ENGINE = "render.engine"
 MOTION_BLUR = "render.use_motion_blur"
 SHUTTER = "render.motion_blur_shutter"
 SHUTTER_CURVE = "render.motion_blur_shutter_curve"
@@ -30,7 +33,7 @@ RANDOM_TIME = (MOTION_BLUR, SHUTTER, SHUTTER_CURVE, ROLLING_SHUTTER)
 """What gives each path a time, which carries its wavelength."""
 
 LABELS = {
-    "render.engine": "Render Engine",
+    ENGINE: "Render Engine",
     "cycles.shading_system": "Open Shading Language",
     "cycles.device": "Device",
     MOTION_BLUR: "Motion Blur",
@@ -113,4 +116,16 @@ def _sentence(scene: bpy.types.Scene, path: str, before: Any, value: Any) -> str
     name = label(scene, path)
     if path == SHUTTER_CURVE:
         return f"{name}: {'flat' if len(set(value)) == 1 else 'as it was'}"
-    return f"{name}: {before} -> {value}"
+    return f"{name}: {_in_words(scene, path, before)} -> {_in_words(scene, path, value)}"
+
+
+def _in_words(scene: bpy.types.Scene, path: str, value: Any) -> str:
+    """A value as it stands in Blender's own panels."""
+    if path == ENGINE:
+        return engine_name(value)
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    owner, _, name = path.rpartition(".")
+    kind = scene.path_resolve(owner).bl_rna.properties[name]
+    item = kind.enum_items.get(value) if kind.type == "ENUM" else None
+    return f"{value:.4g}" if isinstance(value, float) else str(value if item is None else item.name)

@@ -126,7 +126,7 @@ def test_put_back_restores_everything_to_the_bit(scene):
     assert any("Beside" in name or "Block" in name for name in changes)
     said = put_back(scene)
     assert state(scene) == before
-    assert "Render Engine: CYCLES -> BLENDER_EEVEE" in said and "Shutter Curve: as it was" in said
+    assert "Render Engine: Cycles -> EEVEE" in said and "Shutter Curve: as it was" in said
     assert any("faces are where they were" in line for line in said)
     assert not is_analysed(scene) and last_report(scene) is None
     assert put_back(scene) == []
@@ -190,7 +190,7 @@ def test_everything_goes_back_when_no_medium_is_left(scene):
     preparation = nd.prepare(scene)
     assert str(preparation).splitlines()[:2] == [
         "No media: assign a preset first",
-        "changed: Render Engine: CYCLES -> BLENDER_EEVEE",
+        "changed: Render Engine: Cycles -> EEVEE",
     ]
     assert ours(scene) == before | {"cycles.glossy_bounces": 50}
     assert last_report(scene) is None and nd.prepare(scene).changes == ()

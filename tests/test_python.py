@@ -133,7 +133,7 @@ def test_preparing_says_what_it_changed_and_a_second_time_changes_nothing():
     scene.cycles.max_bounces = 12
     scene.cycles.transparent_max_bounces = 1000
     preparation = nd.prepare(scene)
-    assert "Open Shading Language: False -> True" in str(preparation)
+    assert "Open Shading Language: off -> on" in str(preparation)
     assert scene.cycles.max_bounces == 64
     assert scene.cycles.transparent_max_bounces == 1000
     assert nd.prepare(scene).changes == ()
@@ -152,7 +152,7 @@ def test_preparing_gives_paths_a_time_only_where_something_disperses():
     assert not scene.render.use_motion_blur
     dispersing_object()
     changes = str(nd.prepare(scene))
-    assert "Motion Blur: False -> True" in changes and "Shutter: 0.5 -> 0.0" in changes
+    assert "Motion Blur: off -> on" in changes and "Shutter: 0.5 -> 0" in changes
     assert scene.render.use_motion_blur and scene.render.motion_blur_shutter == 0.0
     assert nd.prepare(scene).changes == ()
 

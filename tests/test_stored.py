@@ -304,7 +304,7 @@ def test_only_what_animates_the_dispersion_switches_motion_blur_on():
     assert scene.render.use_motion_blur and scene.render.motion_blur_shutter == 0.0
     inputs["Disperse"].keyframe_delete("default_value")
     changes = nd.prepare(scene).changes
-    assert "Motion Blur: True -> False" in changes and not scene.render.use_motion_blur
+    assert "Motion Blur: on -> off" in changes and not scene.render.use_motion_blur
     assert scene.render.motion_blur_shutter == 0.5 and nd.prepare(scene).changes == ()
     inputs["Disperse"].driver_add("default_value").driver.expression = "1"
     nd.prepare(scene)

@@ -61,7 +61,7 @@ def in_blender():
 def test_registering_twice_changes_nothing():
     once = in_blender()
     nd.register()
-    assert in_blender() == once == (len(registration.CLASSES), 1, 1, True, 1)
+    assert in_blender() == once == (len(registration.CLASSES), 1, 1, True, 2)
 
 
 def test_unregistering_leaves_no_classes_behind():
@@ -70,7 +70,7 @@ def test_unregistering_leaves_no_classes_behind():
     assert not [name for name in dir(bpy.types) if name.upper().startswith("NESTED_DIELECTRIC")]
     nd.unregister()
     nd.register()
-    assert in_blender() == (len(registration.CLASSES), 1, 1, True, 1)
+    assert in_blender() == (len(registration.CLASSES), 1, 1, True, 2)
 
 
 def test_a_registration_that_fails_raises_and_leaves_nothing_behind(monkeypatch):
