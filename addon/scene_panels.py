@@ -6,7 +6,7 @@ import textwrap
 
 import bpy
 
-from .analysis import last_found
+from .analysis import is_analysed, last_found
 from .compatibility import blender_note, blender_problem
 from .drawing import ObjectProperties, Sidebar, draw_alert, draw_text
 from .icons import ready_icon
@@ -204,8 +204,10 @@ def draw_changes(layout: bpy.types.UILayout, context: bpy.types.Context, report:
     parted = listed_media(context.scene).parted
     if parted:
         lines.append(f"Faces in the same place: parted in {parted} object{'s' * (parted != 1)}")
+    if is_analysed(context.scene):
+        lines.append("Media are told what surrounds them")
     header, body = layout.panel("nested_dielectric_changes", default_closed=True)
-    header.label(text=f"Changed: {len(lines)}")
+    header.label(text=f"{len(lines)} Change{'s' * (len(lines) != 1)}")
     header.operator(PutBack.bl_idname, icon="LOOP_BACK")
     for line in lines if body is not None else ():
         draw_text(body, context, line, "DOT")

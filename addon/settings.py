@@ -99,12 +99,16 @@ def held(scene: bpy.types.Scene, changed: Changed, paths: Iterable[str] | None =
 def go_back(scene: bpy.types.Scene, changed: Changed, paths: Iterable[str] | None = None) -> list[str]:
     """Let some settings, or all, be what they were, and forget that they were changed; return what was changed."""
     paths = tuple(changed if paths is None else paths)
-    back = held(scene, changed, paths)
-    for path, (before, _) in back.items():
-        _write(scene, path, before)
+    changes = []
+    for path, (before, value) in held(scene, changed, paths).items():
+        try:
+            _write(scene, path, before)
+        except TypeError:  # an engine that is not installed here
+            continue
+        changes.append(_sentence(scene, path, value, before))
     for path in paths:
         changed.pop(path, None)
-    return [_sentence(scene, path, value, before) for path, (before, value) in back.items()]
+    return changes
 
 
 def sentences(scene: bpy.types.Scene, changed: Changed) -> list[str]:

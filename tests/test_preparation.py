@@ -236,6 +236,16 @@ def test_a_report_names_no_other_settings_than_ours(scene):
     assert last_report(scene) == Report(1, settings={"render.engine": ("X", "Y")})
 
 
+def test_an_engine_that_is_not_installed_any_more_stays_away(scene):
+    ball()
+    nd.prepare(scene)
+    known = last_report(scene).settings
+    keep_report(scene, 1, (), (), known | {"render.engine": ("GONE_ENGINE", "CYCLES")})
+    said = put_back(scene)
+    assert scene.render.engine == "CYCLES" and scene.cycles.max_bounces == 3
+    assert not any("Render Engine" in line for line in said)
+
+
 def test_parted_faces_that_another_prepared_scene_shows_stay_parted(scene):
     glass, water = nd.new_material("Glass", priority=1), nd.new_material("Water", priority=2)
     for name, low, high, material in (("A", (0, 0, 0), (1, 1, 1), glass), ("B", (1, 0, 0), (2, 1, 1), water)):

@@ -283,7 +283,7 @@ def test_no_random_move_changes_another_number_or_passes_more_than_one_place():
     rng = random.Random(5)
     add_table(A=0, B=10, C=10, D=20, E=30, F=[15], G=[30])
     moved = refused = 0
-    for _ in range(100):
+    for _ in range(60):
         name, step = rng.choice("ABCDEFG"), rng.choice((-1, 1))
         before, order = numbers(), places()
         place = next(index for index, level in enumerate(order) if name in level)
@@ -307,7 +307,7 @@ def test_no_random_move_changes_another_number_or_passes_more_than_one_place():
             rest = [level for level in expected if level]
             cut = sum(bool(level) for level in expected[:target]) + (step > 0)
             assert places() == rest[:cut] + [{name}] + rest[cut:]
-    assert moved > 40 and refused > 0
+    assert moved > 25 and refused > 0
 
 
 def test_thousands_of_objects_are_grouped_and_move_as_one():

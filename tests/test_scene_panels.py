@@ -264,7 +264,8 @@ def test_the_panel_says_ready_until_settings_or_media_change(draw, panel, scene)
     bpy.ops.nested_dielectric.prepare()
     labels, buttons = labels_and_operators(draw(panel))
     assert "Ready to Render As of the last Prepare" in labels and "nested_dielectric.put_back" in buttons
-    assert "Render Engine: " in labels and "Max Bounces: 12 -> 64" in labels
+    assert "Render Engine: EEVEE -> Cycles" in labels and "Max Bounces: 12 -> 64" in labels
+    assert "Media are told what surrounds them" in labels and " Changes " in labels
     scene.cycles.device = "GPU"
     drawn = draw(panel)
     assert "Ready" not in labels_and_operators(drawn)[0] and alerts(drawn)
