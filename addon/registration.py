@@ -7,7 +7,22 @@ from contextlib import ExitStack
 
 import bpy
 
-from . import add_menu, dispersion_panels, lamp_panel, live, media_list, medium_panels, operators, panels, versions
+from . import (
+    add_menu,
+    dispersion_panels,
+    icons,
+    lamp_panel,
+    live,
+    media_list,
+    media_rows,
+    medium_panels,
+    notices,
+    operators,
+    preparation_operators,
+    priority_operators,
+    scene_panels,
+    versions,
+)
 from .checks import material_problems
 from .compatibility import blender_note, blender_problem, settings_problem
 from .media import media
@@ -18,11 +33,15 @@ _CHANGES = tuple(
 """Handlers of all that may change which media a scene has."""
 
 CLASSES = (
+    media_rows.Place,
     *operators.CLASSES,
     *add_menu.CLASSES,
-    *panels.CLASSES,
+    *priority_operators.CLASSES,
+    *preparation_operators.CLASSES,
+    *scene_panels.CLASSES,
     *medium_panels.CLASSES,
     *lamp_panel.CLASSES,
+    *scene_panels.LAST_CLASSES,
 )
 
 _registered: ExitStack | None = None
@@ -42,13 +61,23 @@ def register() -> None:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
 
+        icons.open_icons()
+        undo.callback(icons.close_icons)
         dispersion_panels.open_pictures()
         undo.callback(dispersion_panels.close_pictures)
 
         bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
-            name="Active Medium", get=panels.get_active, set=panels.set_active, options=set()
+            name="Active Medium", get=media_rows.get_active, set=media_rows.set_active, options=set()
         )
         undo.callback(delattr, bpy.types.Scene, "nested_dielectric_active")
+        bpy.types.WindowManager.nested_dielectric_places = bpy.props.CollectionProperty(type=media_rows.Place)
+        undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_places")
+        undo.callback(media_rows.forget_wanted)
+
+        for name, draw in notices.PLACES:
+            place = getattr(bpy.types, name)
+            place.append(draw)
+            undo.callback(place.remove, draw)
 
         for menu, entry in (
             (bpy.types.VIEW3D_MT_object, operators.draw_preset_menu),
