@@ -12,7 +12,7 @@ BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli 
 # Small renders mostly wait for one thread that compiles shaders, so two files at a time take half as long.
 PYTEST_OPTIONS := -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: demo test test-quick test-lts bench bench-quick extension clean
+.PHONY: demo docs test test-quick test-lts bench bench-quick extension clean
 
 demo: $(STAMP)
 	$(PYTHON) -m nested_dielectric demo
@@ -27,6 +27,10 @@ test-quick: $(STAMP)
 # What touches Blender, each claim on few inputs, on the long-term release, and files that cross between both.
 test-lts: $(STAMP) $(LTS_STAMP)
 	ND_OTHER_BLENDER=$(PYTHON) $(LTS_PYTHON) -m pytest $(PYTEST_OPTIONS) -m 'not pure and not again'
+
+# The manual's generated pages, and those of its pictures whose scripts have changed.
+docs: $(STAMP)
+	$(PYTHON) docs/build
 
 bench: $(STAMP)
 	$(PYTHON) benchmarks/bench.py
