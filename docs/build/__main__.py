@@ -1,5 +1,5 @@
-"""``make docs``: writes the manual's pages that come from the code, and renders its pictures. Names of pictures render those
-anew.
+"""``make docs``: writes the manual's pages that come from the code, and renders its pictures. Names of pictures render
+those anew.
 """
 
 import sys

@@ -17,7 +17,7 @@ def prism(distribution: str, clamp: bool = False, background: float = 0.1) -> bp
     scene = studio.new_scene(400, 220, samples=96)
     scene.view_settings.view_transform = "Standard"
     scene.view_settings.look = "None"
-    studio.plain_world((background,) * 3)
+    studio.plain_world((background,) * 3, 1.0)
     corners = ((0.95, 0.0), (-0.95, 0.62), (-0.95, -0.62))
     studio.medium(
         "Prism",
@@ -37,7 +37,7 @@ def prism(distribution: str, clamp: bool = False, background: float = 0.1) -> bp
 
 def _slit(x: float) -> None:
     slit = studio.add("Slit", studio.box((x, 5.0, 0.0), (0.022, 0.02, 8.0), bevel=0.001))
-    material = studio.surface("White Light", (0.0, 0.0, 0.0))
+    material = studio.surface("White Light", (0.0, 0.0, 0.0), 0.5)
     shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
     shader.inputs["Emission Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     shader.inputs["Emission Strength"].default_value = 22.0

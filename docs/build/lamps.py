@@ -46,7 +46,7 @@ def by_lobe(carried: bool, caustics: bool = False) -> bpy.types.Scene:
         "caustic_roughness_offset": 0.1,
         "shadow_mode": "BLACK",
     }
-    scene.cycles.caustics_refractive = caustics
+    scene.cycles.caustics_reflective = scene.cycles.caustics_refractive = caustics
     scene.cycles.sample_clamp_indirect = 0.0
     studio.medium("Pawn", studio.turned(PAWN), "glass", **values)
     bpy.data.objects["Pawn"].location = (-0.3, 0.35, 0.0)
@@ -63,7 +63,8 @@ def lobe(**values) -> bpy.types.Scene:
     """A clear ball whose direct refraction has a lobe of its own, with a small lamp behind it."""
     scene = studio.new_scene(240, 240, samples=48)
     values = {"separate_direct_lobe": True, "direct_roughness": 0.42, "direct_roughness_offset": 0.0, **values}
-    studio.medium("Ball", studio.ball((0.0, 0.0, 0.75), 0.75 - studio.TABLE_GAP), "glass", shadow_mode="BLACK", **values)
+    ball = studio.ball((0.0, 0.0, 0.75), 0.745)
+    studio.medium("Ball", ball, "glass", shadow_mode="BLACK", **values)
     studio.floor(light=(0.3, 0.3, 0.31), dark=(0.14, 0.14, 0.15), tile=0.4)
     studio.plain_world(studio.COOL, 0.06)
     lamp = studio.softbox((0.0, 5.0, 1.6), (0.0, 0.0, 0.75), 60.0, size=0.5, colour=studio.WARM)
@@ -113,7 +114,9 @@ PICTURES = {
         {
             "GGX": partial(lobe, direct_distribution="GGX"),
             "Beckmann": partial(lobe, direct_distribution="BECKMANN"),
-            "Along the refraction": partial(lobe, direct_anisotropy=-0.85, tangent_from="REFRACTION", blur_anisotropic_poles=0.4),
+            "Along the refraction": partial(
+                lobe, direct_anisotropy=-0.85, tangent_from="REFRACTION", blur_anisotropic_poles=0.4
+            ),
             "Across the tangent": partial(lobe, direct_anisotropy=0.85, tangent_from="TANGENT"),
         },
     ),

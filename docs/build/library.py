@@ -36,7 +36,8 @@ def contact_sheet() -> np.ndarray:
         presets = sorted((load_preset(key) for key in found), key=lambda preset: preset.name)
         cells = [_cell(preset, found[preset.key]) for preset in presets if preset.group == group]
         if cells:
-            rows.append([frames.text(group, COLUMNS * (CELL + frames.GAP) - frames.GAP, HEADING, bold=True, centred=False)])
+            width = COLUMNS * (CELL + frames.GAP) - frames.GAP
+            rows.append([frames.text(group, width, HEADING, bold=True, centred=False)])
             rows += [cells[first : first + COLUMNS] for first in range(0, len(cells), COLUMNS)]
     return frames.sheet(rows)
 

@@ -16,7 +16,14 @@ from nested_dielectric.media import media
 
 RED = {"transmittance": (0.85, 0.05, 0.03), "transmittance_depth": 0.8}
 BLUE = {"transmittance": (0.05, 0.28, 0.75), "transmittance_depth": 0.8}
-TUMBLER = ((0.0, 0.03, 0.0), (0.70, 0.03, 0.06), (0.78, 1.5, 0.03), (0.72, 1.5, 0.03), (0.65, 0.16, 0.08), (0.0, 0.16, 0.0))
+TUMBLER = (
+    (0.0, 0.03, 0.0),
+    (0.70, 0.03, 0.06),
+    (0.78, 1.5, 0.03),
+    (0.72, 1.5, 0.03),
+    (0.65, 0.16, 0.08),
+    (0.0, 0.16, 0.0),
+)
 
 
 def iced_water(size: int = 640, samples: int = 32) -> bpy.types.Scene:

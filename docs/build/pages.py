@@ -97,16 +97,17 @@ def presets_page() -> str:
     for group in GROUPS:
         members = [preset for preset in presets if preset.group == group]
         if members:
-            rows = [("Preset", "In Python", "IOR", "Colour at depth", "Priority", "What it is"), *map(_preset_row, members)]
+            head = ("Preset", "In Python", "IOR", "Colour at depth", "Priority", "What it is")
             sources = "".join(f"- **{preset.name}**: {preset.source}\n" for preset in members)
-            parts += [f"## {group}\n", _table(rows), f"Sources:\n\n{sources}"]
+            parts += [f"## {group}\n", _table([head, *map(_preset_row, members)]), f"Sources:\n\n{sources}"]
     return "\n".join(parts)
 
 
 def _preset_row(preset: Preset) -> tuple[str, ...]:
     values = preset.parameters
     ior = f"{values['ior']:.4g}" if "ior" in values else ""
-    return f"**{preset.name}**", f"`{preset.key}`", ior, _colour(preset), str(values.get("priority", 0)), preset.description
+    priority = str(values.get("priority", 0))
+    return f"**{preset.name}**", f"`{preset.key}`", ior, _colour(preset), priority, preset.description
 
 
 def _colour(preset: Preset) -> str:

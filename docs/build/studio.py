@@ -1,15 +1,16 @@
 """The room that the manual's pictures are taken in: a tiled floor, a soft box, a wall that goes from dark to light.
 
-One unit is 10 cm. Media are given to objects as an artist does it: ``nd.assign()`` here, ``nd.prepare()`` before a render.
+One unit is 10 cm. Objects become media by ``nd.assign()`` and scenes ready by ``nd.prepare()``, as with the buttons.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import bmesh
 import bpy
-from mathutils import Euler, Matrix, Vector
+from mathutils import Matrix, Vector
 
 import nested_dielectric as nd
 from nested_dielectric.iced_water import lathe, rounded
@@ -20,11 +21,7 @@ WARM: Colour = (1.0, 0.86, 0.70)
 COOL: Colour = (0.80, 0.90, 1.0)
 GREY: Colour = (0.5, 0.5, 0.5)
 
-TABLE_GAP = 0.004
-"""Air between the floor and what stands on it."""
-
-
-def new_scene(width: int = 320, height: int = 320, samples: int = 32) -> bpy.types.Scene:
+def new_scene(width: int, height: int, samples: int) -> bpy.types.Scene:
     """Empty the file and return its scene, with settings for a small, denoised picture."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
@@ -55,7 +52,9 @@ def add(name: str, data: bpy.types.ID | None) -> bpy.types.Object:
     return obj
 
 
-def medium(name: str, mesh: bpy.types.Mesh, preset: str | None, priority: int | None = None, **values) -> bpy.types.Object:
+def medium(
+    name: str, mesh: bpy.types.Mesh, preset: str, priority: int | None = None, **values: Any
+) -> bpy.types.Object:
     """Put a medium into the scene: a mesh, a preset and what differs from it."""
     obj = add(name, mesh)
     nd.assign(obj, nd.new_material(name, preset=preset, **values), priority)
@@ -70,7 +69,7 @@ def smooth(mesh: bpy.types.Mesh, angle: float | None = None) -> bpy.types.Mesh:
     return mesh
 
 
-def _mesh(name: str, build) -> bpy.types.Mesh:
+def _mesh(name: str, build: Callable[[bmesh.types.BMesh], None]) -> bpy.types.Mesh:
     shape = bmesh.new()
     build(shape)
     mesh = bpy.data.meshes.new(name)
@@ -82,10 +81,14 @@ def _mesh(name: str, build) -> bpy.types.Mesh:
 def ball(centre: Sequence[float], radius: float) -> bpy.types.Mesh:
     """Return a sphere."""
     place = Matrix.Translation(centre)
-    return smooth(_mesh("Ball", lambda shape: bmesh.ops.create_icosphere(shape, subdivisions=6, radius=radius, matrix=place)))
+
+    def build(shape: bmesh.types.BMesh) -> None:
+        bmesh.ops.create_icosphere(shape, subdivisions=6, radius=radius, matrix=place)
+
+    return smooth(_mesh("Ball", build))
 
 
-def rod(start: Sequence[float], end: Sequence[float], radius: float, sides: int = 96) -> bpy.types.Mesh:
+def rod(start: Sequence[float], end: Sequence[float], radius: float) -> bpy.types.Mesh:
     """Return a closed cylinder from one point to another."""
     start, end = Vector(start), Vector(end)
     turn = (end - start).to_track_quat("Z", "Y").to_matrix().to_4x4()
@@ -94,7 +97,7 @@ def rod(start: Sequence[float], end: Sequence[float], radius: float, sides: int 
 
     def build(shape: bmesh.types.BMesh) -> None:
         bmesh.ops.create_cone(
-            shape, cap_ends=True, segments=sides, radius1=radius, radius2=radius, depth=depth, matrix=place
+            shape, cap_ends=True, segments=96, radius1=radius, radius2=radius, depth=depth, matrix=place
         )
         rims = [edge for edge in shape.edges if len(edge.link_faces) == 2 and edge.calc_face_angle() > 1.0]
         bmesh.ops.bevel(shape, geom=rims, offset=radius * 0.15, segments=4, profile=0.5, affect="EDGES")
@@ -102,9 +105,9 @@ def rod(start: Sequence[float], end: Sequence[float], radius: float, sides: int 
     return smooth(_mesh("Rod", build), 0.6)
 
 
-def box(centre: Sequence[float], size: Sequence[float], turn: Sequence[float] = (0, 0, 0), bevel: float = 0.04) -> bpy.types.Mesh:
+def box(centre: Sequence[float], size: Sequence[float], bevel: float) -> bpy.types.Mesh:
     """Return a block with rounded edges."""
-    place = Matrix.LocRotScale(Vector(centre), Euler(turn), Vector(size))
+    place = Matrix.LocRotScale(Vector(centre), None, Vector(size))
 
     def build(shape: bmesh.types.BMesh) -> None:
         bmesh.ops.create_cube(shape, size=1.0, matrix=place)
@@ -131,7 +134,7 @@ def turned(corners: Iterable[tuple[float, float, float]]) -> bpy.types.Mesh:
 # Room ---------------------------------------------------------------------------------------------------------------
 
 
-def surface(name: str, colour: Colour = GREY, roughness: float = 0.5) -> bpy.types.Material:
+def surface(name: str, colour: Colour, roughness: float) -> bpy.types.Material:
     """Return a material that is no medium."""
     material = bpy.data.materials.new(name)
     shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
@@ -140,11 +143,13 @@ def surface(name: str, colour: Colour = GREY, roughness: float = 0.5) -> bpy.typ
     return material
 
 
-def floor(light: Colour = (0.62, 0.60, 0.57), dark: Colour = (0.36, 0.37, 0.39), tile: float = 0.5, turn: float = 0.5) -> bpy.types.Object:
+def floor(
+    light: Colour = (0.62, 0.60, 0.57), dark: Colour = (0.36, 0.37, 0.39), tile: float = 0.5
+) -> bpy.types.Object:
     """Lay a floor of two kinds of tiles, to see through what stands on it."""
     mesh = bpy.data.meshes.new("Floor")
     mesh.from_pydata([(-12, -12, 0), (12, -12, 0), (12, 7, 0), (-12, 7, 0)], [], [(0, 1, 2, 3)])
-    material = surface("Tiles", roughness=0.6)
+    material = surface("Tiles", GREY, 0.6)
     nodes, links = material.node_tree.nodes, material.node_tree.links
     shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
     shader.inputs["Specular IOR Level"].default_value = 0.0
@@ -153,7 +158,7 @@ def floor(light: Colour = (0.62, 0.60, 0.57), dark: Colour = (0.36, 0.37, 0.39),
     checker.inputs["Color2"].default_value = (*dark, 1.0)
     checker.inputs["Scale"].default_value = 1.0 / tile
     mapping = nodes.new("ShaderNodeMapping")
-    mapping.inputs["Rotation"].default_value = (0.0, 0.0, turn)
+    mapping.inputs["Rotation"].default_value = (0.0, 0.0, 0.5)
     mapping.inputs["Location"].default_value = (0.0, 0.0, 0.1)
     links.new(nodes.new("ShaderNodeTexCoord").outputs["Object"], mapping.inputs["Vector"])
     links.new(mapping.outputs["Vector"], checker.inputs["Vector"])
@@ -162,7 +167,7 @@ def floor(light: Colour = (0.62, 0.60, 0.57), dark: Colour = (0.36, 0.37, 0.39),
     return add("Floor", mesh)
 
 
-def wall(dark: Colour = (0.015, 0.03, 0.045), light: Colour = (0.95, 0.9, 0.82), strength: float = 0.9) -> bpy.types.World:
+def wall(strength: float = 0.9) -> bpy.types.World:
     """Surround the scene with a wall that is light behind it and dark at the sides and above."""
     world = bpy.data.worlds.new("Wall")
     bpy.context.scene.world = world
@@ -170,12 +175,10 @@ def wall(dark: Colour = (0.015, 0.03, 0.045), light: Colour = (0.95, 0.9, 0.82),
     glow = nodes.new("ShaderNodeTexGradient")
     glow.gradient_type = "QUADRATIC_SPHERE"
     mapping = nodes.new("ShaderNodeMapping")
-    reach = 1.0
-    mapping.inputs["Location"].default_value = -Vector((-0.35, 1.0, 0.12)).normalized() / reach
-    mapping.inputs["Scale"].default_value = (1.0 / reach,) * 3
+    mapping.inputs["Location"].default_value = -Vector((-0.35, 1.0, 0.12)).normalized()
     ramp = nodes.new("ShaderNodeValToRGB")
-    ramp.color_ramp.elements[0].color = (*dark, 1.0)
-    ramp.color_ramp.elements[1].color = (*light, 1.0)
+    ramp.color_ramp.elements[0].color = (0.015, 0.03, 0.045, 1.0)
+    ramp.color_ramp.elements[1].color = (0.95, 0.9, 0.82, 1.0)
     ramp.color_ramp.elements[1].position = 0.9
     background = next(node for node in nodes if node.type == "BACKGROUND")
     background.inputs["Strength"].default_value = strength
@@ -186,7 +189,7 @@ def wall(dark: Colour = (0.015, 0.03, 0.045), light: Colour = (0.95, 0.9, 0.82),
     return world
 
 
-def plain_world(colour: Colour, strength: float = 1.0) -> bpy.types.World:
+def plain_world(colour: Colour, strength: float) -> bpy.types.World:
     """Surround the scene with one colour."""
     world = bpy.data.worlds.new("Plain")
     bpy.context.scene.world = world
@@ -196,7 +199,9 @@ def plain_world(colour: Colour, strength: float = 1.0) -> bpy.types.World:
     return world
 
 
-def softbox(place: Sequence[float], target: Sequence[float], power: float, size: float = 2.0, colour: Colour = COOL) -> bpy.types.Object:
+def softbox(
+    place: Sequence[float], target: Sequence[float], power: float, size: float, colour: Colour = COOL
+) -> bpy.types.Object:
     """Hang up a square lamp."""
     light = bpy.data.lights.new("Softbox", "AREA")
     light.shape = "SQUARE"
@@ -209,18 +214,18 @@ def softbox(place: Sequence[float], target: Sequence[float], power: float, size:
     return lamp
 
 
-def sun(towards: Sequence[float], strength: float, angle: float = 0.05, colour: Colour = WARM) -> bpy.types.Object:
-    """Let the sun shine from a direction; ``angle`` is its diameter in radians."""
+def sun(towards: Sequence[float], strength: float) -> bpy.types.Object:
+    """Let the sun shine from a direction, somewhat larger than the real one."""
     light = bpy.data.lights.new("Sun", "SUN")
     light.energy = strength
-    light.angle = angle
-    light.color = colour
+    light.angle = 0.05
+    light.color = WARM
     lamp = add("Sun", light)
     lamp.rotation_euler = Vector(towards).to_track_quat("Z", "Y").to_euler()
     return lamp
 
 
-def camera(place: Sequence[float], target: Sequence[float], lens: float = 60.0) -> bpy.types.Object:
+def camera(place: Sequence[float], target: Sequence[float], lens: float) -> bpy.types.Object:
     """Aim the scene's camera."""
     obj = add("Camera", bpy.data.cameras.new("Camera"))
     obj.data.lens = lens
