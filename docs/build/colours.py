@@ -30,7 +30,7 @@ def prism(distribution: str, clamp: bool = False, background: float = 0.1) -> bp
         clamp_negative=clamp,
     )
     for index in range(SLITS):
-        _slit(1.05 * (index - (SLITS - 1) / 2))
+        _slit(1.12 * (index - (SLITS - 1) / 2))
     studio.camera((0.0, -7.0, 0.25), (0.0, 0.0, 0.0), lens=68.0)
     return scene
 

@@ -16,12 +16,13 @@ from nested_dielectric.media import media
 
 RED = {"transmittance": (0.85, 0.05, 0.03), "transmittance_depth": 0.8}
 BLUE = {"transmittance": (0.05, 0.28, 0.75), "transmittance_depth": 0.8}
+JUICE = {"transmittance": (0.95, 0.38, 0.05), "transmittance_depth": 1.0}
 TUMBLER = (
     (0.0, 0.03, 0.0),
     (0.70, 0.03, 0.06),
     (0.78, 1.5, 0.03),
-    (0.72, 1.5, 0.03),
-    (0.65, 0.16, 0.08),
+    (0.64, 1.5, 0.03),
+    (0.58, 0.16, 0.08),
     (0.0, 0.16, 0.0),
 )
 
@@ -76,13 +77,11 @@ def _room() -> None:
 
 
 def overlap(by: float) -> bpy.types.Scene:
-    """A tumbler of water that reaches into the glass by so much, or leaves a gap where that is negative."""
+    """A tumbler of juice that reaches into the glass by so much, or leaves a gap where that is negative."""
     scene = studio.new_scene(320, 320, samples=32)
     studio.medium("Glass", studio.turned(TUMBLER), "glass")
-    corners = ((0.0, 0.16 - by, 0.0), (0.65 + by, 0.16 - by, 0.08), (0.70 + by, 1.05, 0.01), (0.0, 1.05, 0.0))
-    studio.medium("Water", studio.turned(corners), "water")
-    straw = studio.add("Straw", studio.rod((-0.35, 0.1, 0.26), (0.75, 0.3, 1.95), 0.05))
-    straw.data.materials.append(studio.surface("Straw", (0.75, 0.05, 0.03), 0.3))
+    corners = ((0.0, 0.16 - by, 0.0), (0.58 + by, 0.16 - by, 0.08), (0.62 + by, 1.05, 0.01), (0.0, 1.05, 0.0))
+    studio.medium("Juice", studio.turned(corners), "water", **JUICE)
     _room()
     studio.camera((0.0, -4.6, 1.9), (0.0, 0.0, 0.82), lens=58.0)
     return scene
@@ -141,8 +140,8 @@ PICTURES = {
     "overlap": (
         2,
         {
-            "Too small: a film of air, silvery": partial(overlap, -0.02),
-            "Overlapping: water against glass": partial(overlap, 0.02),
+            "Too small: a film of air shows": partial(overlap, -0.02),
+            "Overlapping: juice against glass": partial(overlap, 0.02),
         },
     ),
     "red_wine": (1, {"": red_wine}),
