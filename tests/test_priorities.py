@@ -83,6 +83,13 @@ def test_words_say_over_whom_a_medium_wins_the_nearest_first():
     assert priorities.in_words(rows[:1], rows[0]) == "is alone"
 
 
+def test_words_count_what_has_the_same_number():
+    add_table(**dict.fromkeys("ABCDEFG", 5))
+    rows = priorities.priority_rows(bpy.context.scene.objects)
+    assert priorities.in_words(rows, rows[1]) == "is one with A, C, D, E and 2 more"
+    assert priorities.in_words(rows, rows[6]) == "is one with A, B, C, D and 2 more"
+
+
 @pytest.mark.parametrize(
     "name, step, number",
     [
