@@ -33,7 +33,7 @@ _CHANGES = tuple(
 """Handlers of all that may change which media a scene has."""
 
 CLASSES = (
-    media_rows.Place,
+    media_rows.NestedDielectricPlace,
     *operators.CLASSES,
     *add_menu.CLASSES,
     *priority_operators.CLASSES,
@@ -70,7 +70,9 @@ def register() -> None:
             name="Active Medium", get=media_rows.get_active, set=media_rows.set_active, options=set()
         )
         undo.callback(delattr, bpy.types.Scene, "nested_dielectric_active")
-        bpy.types.WindowManager.nested_dielectric_places = bpy.props.CollectionProperty(type=media_rows.Place)
+        bpy.types.WindowManager.nested_dielectric_places = bpy.props.CollectionProperty(
+            type=media_rows.NestedDielectricPlace
+        )
         undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_places")
         undo.callback(media_rows.forget_wanted)
 
