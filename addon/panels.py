@@ -26,7 +26,6 @@ from .operators import (
     LAMP_CARRIERS,
     SELLMEIER_REMEDY,
     AddPasses,
-    AssignPreset,
     ClearAnalysis,
     DispersionModel,
     LampCarrier,
@@ -41,6 +40,7 @@ from .operators import (
     coefficients_ior,
 )
 from .parameters import BY_KEYWORD, DISPERSION_MODELS, PRIORITY_PROPERTY
+from .preset_menus import draw_presets
 from .spectra import DISTRIBUTIONS, GAMUTS, preview
 from .spectral_images import digest
 from .versions import outdated_materials, version_problems
@@ -216,7 +216,7 @@ def draw_active(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         if socket is not None:
             column.prop(socket, "default_value", text="Priority of Material")
         draw_priority(column.row(align=True), obj, text="Priority")
-    layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Assign Preset", icon="MATERIAL")
+    draw_presets(layout)
 
 
 def draw_analysis(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

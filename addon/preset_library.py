@@ -18,7 +18,7 @@ PACKAGE = __package__.removesuffix(".addon")
 """Name of the extension among Blender's."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Catalogue:
     """Presets as menus show them.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -139,3 +139,8 @@ def key_of(name: str) -> str:
     if not key:
         raise ParameterError(f"{name!r} cannot name a preset; it needs a letter or a digit")
     return f"{key}_preset" if _RESERVED.fullmatch(key) else key
+
+
+def renamed(preset: Preset, name: str) -> Preset:
+    """Return a preset under another name. Raises :class:`ParameterError` for one that cannot name a preset."""
+    return replace(preset, key=key_of(name), name=name.strip())

@@ -7,7 +7,18 @@ from contextlib import ExitStack
 
 import bpy
 
-from . import live, media_list, operators, panels, versions
+from . import (
+    asset_library,
+    live,
+    media_list,
+    operators,
+    panels,
+    preferences,
+    preset_menus,
+    preset_operators,
+    preset_pictures,
+    versions,
+)
 from .checks import material_problems
 from .compatibility import blender_note, blender_problem, settings_problem
 from .media import media
@@ -16,6 +27,14 @@ _CHANGES = tuple(
     getattr(bpy.app.handlers, f"{when}_post") for when in ("depsgraph_update", "frame_change", "undo", "redo", "load")
 )
 """Handlers of all that may change which media a scene has."""
+
+CLASSES = (
+    *preferences.CLASSES,
+    *operators.CLASSES,
+    *preset_operators.CLASSES,
+    *preset_menus.CLASSES,
+    *panels.CLASSES,
+)
 
 _registered: ExitStack | None = None
 """How to take out what :func:`register` put in; None while nothing is in."""
@@ -30,20 +49,30 @@ def register() -> None:
     if _registered is not None:
         return
     with ExitStack() as undo:
-        for cls in (*operators.CLASSES, *panels.CLASSES):
+        for cls in CLASSES:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
 
         panels.open_pictures()
         undo.callback(panels.close_pictures)
+        preset_pictures.open_pictures()
+        undo.callback(preset_pictures.close_pictures)
 
         bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
             name="Active Medium", get=panels.get_active, set=panels.set_active, options=set()
         )
         undo.callback(delattr, bpy.types.Scene, "nested_dielectric_active")
 
-        bpy.types.VIEW3D_MT_object.append(operators.draw_preset_menu)
-        undo.callback(bpy.types.VIEW3D_MT_object.remove, operators.draw_preset_menu)
+        bpy.types.WindowManager.nested_dielectric_presets = bpy.props.PointerProperty(
+            type=preset_menus.PresetChoice, options={"SKIP_SAVE"}
+        )
+        undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_presets")
+
+        bpy.types.VIEW3D_MT_object.prepend(preset_menus.draw_object_menu)
+        undo.callback(bpy.types.VIEW3D_MT_object.remove, preset_menus.draw_object_menu)
+
+        asset_library.follow(preferences.preference("asset_library"))
+        undo.callback(asset_library.follow, False)
 
         for handlers, handler in (
             (bpy.app.handlers.render_init, warn_before_render),

@@ -7,7 +7,18 @@ import numpy as np
 import pytest
 
 import nested_dielectric as nd
-from nested_dielectric import lights, materials, media, node_group, operators, panels, registration, spectra
+from nested_dielectric import (
+    lights,
+    materials,
+    media,
+    node_group,
+    operators,
+    panels,
+    preset_menus,
+    preset_operators,
+    registration,
+    spectra,
+)
 from nested_dielectric.parameters import BY_KEYWORD
 from nested_dielectric.passes import compositors
 
@@ -109,26 +120,30 @@ def labels_and_operators(drawn):
 
 def in_blender():
     """What the extension has put into Blender."""
-    classes = {cls for cls in (*operators.CLASSES, *panels.CLASSES) if cls.is_registered}
-    menus = bpy.types.VIEW3D_MT_object._dyn_ui_initialize().count(operators.draw_preset_menu)
+    classes = {cls for cls in registration.CLASSES if cls.is_registered}
+    menus = bpy.types.VIEW3D_MT_object._dyn_ui_initialize().count(preset_menus.draw_object_menu)
     handlers = bpy.app.handlers.render_init[:].count(registration.warn_before_render)
     pictures = len(bpy.utils.previews._uuid_open)
-    return len(classes), menus, handlers, hasattr(bpy.types.Scene, "nested_dielectric_active"), pictures
+    properties = [
+        hasattr(bpy.types.Scene, "nested_dielectric_active"),
+        hasattr(bpy.types.WindowManager, "nested_dielectric_presets"),
+    ]
+    return len(classes), menus, handlers, properties, pictures
 
 
 def test_registering_twice_changes_nothing():
     once = in_blender()
     nd.register()
-    assert in_blender() == once == (len(operators.CLASSES) + len(panels.CLASSES), 1, 1, True, 1)
+    assert in_blender() == once == (len(registration.CLASSES), 1, 1, [True, True], 2)
 
 
 def test_unregistering_leaves_no_classes_behind():
     nd.unregister()
-    assert in_blender() == (0, 0, 0, False, 0)
+    assert in_blender() == (0, 0, 0, [False, False], 0)
     assert not [name for name in dir(bpy.types) if name.upper().startswith("NESTED_DIELECTRIC")]
     nd.unregister()
     nd.register()
-    assert in_blender() == (len(operators.CLASSES) + len(panels.CLASSES), 1, 1, True, 1)
+    assert in_blender() == (len(registration.CLASSES), 1, 1, [True, True], 2)
 
 
 def test_a_registration_that_fails_raises_and_leaves_nothing_behind(monkeypatch):
@@ -139,14 +154,14 @@ def test_a_registration_that_fails_raises_and_leaves_nothing_behind(monkeypatch)
     monkeypatch.setattr(registration.bpy.utils, "register_cli_command", fail)
     with pytest.raises(ValueError, match="no more commands"):
         nd.register()
-    assert in_blender() == (0, 0, 0, False, 0)
+    assert in_blender() == (0, 0, 0, [False, False], 0)
 
 
 def test_an_unsupported_blender_still_gets_the_panels_and_says_why(monkeypatch, capsys):
     nd.unregister()
     monkeypatch.setattr(registration, "blender_problem", lambda: "this Blender cannot")
     nd.register()
-    assert in_blender()[0] == len(operators.CLASSES) + len(panels.CLASSES)
+    assert in_blender()[0] == len(registration.CLASSES)
     assert capsys.readouterr().err == "Nested Dielectric: this Blender cannot\n"
 
 
@@ -174,7 +189,8 @@ def test_presets_are_greyed_out_where_nothing_can_be_a_medium():
 
 def test_operators_are_greyed_out_in_a_blender_that_cannot_render_media(monkeypatch):
     add_cube("A")
-    monkeypatch.setattr(operators, "blender_problem", lambda: "this Blender cannot")
+    for module in (operators, preset_operators):
+        monkeypatch.setattr(module, "blender_problem", lambda: "this Blender cannot")
     assert not bpy.ops.nested_dielectric.assign_preset.poll()
     assert not bpy.ops.nested_dielectric.prepare.poll()
 
