@@ -120,6 +120,7 @@ class FitDepth(bpy.types.Operator):
 
     depth: bpy.props.EnumProperty(
         name="Depth",
+        description="How thick a body shows the medium's colour",
         items=(
             (FIT, "Active Object", "As thick as the active object: the mean way through it"),
             (MEASURED, "As Measured", "As thick as what the preset was measured at, in the scene's units"),
