@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -106,7 +107,6 @@ def _stamp(folder: Path) -> tuple:
 
 def _catalogue() -> Catalogue:
     found = {key: presets.load_preset(key) for key in presets.preset_names()}
-    names = {preset.name.casefold() for preset in found.values()}
     own, problems = {}, []
     folder = user_folder()
     for key in presets.preset_names(folder):
@@ -115,20 +115,29 @@ def _catalogue() -> Catalogue:
         except ParameterError as error:
             problems.append(f"{error}; correct the file or delete it")
             continue
-        if key in found or preset.name.casefold() in names:
+        if _has(found.values(), key, preset.name):
             problems.append(f"preset file {folder / key}.toml: {preset.name} is built in; rename the file and its preset")
         else:
             own[key] = preset
     return Catalogue(dict(sorted((found | own).items())), frozenset(own), tuple(problems))
 
 
+def is_built_in(key: str, name: str) -> bool:
+    """Tell whether a preset of the extension's has a key or a name."""
+    found = catalogue()
+    return _has((preset for preset in found.presets.values() if preset.key not in found.own), key, name)
+
+
+def _has(members: Iterable[Preset], key: str, name: str) -> bool:
+    return any(key == preset.key or name.casefold() == preset.name.casefold() for preset in members)
+
+
 def save_user_preset(preset: Preset) -> Path:
     """Write a preset of the user's, in place of one of its key. Raises :class:`ParameterError` if its name is taken by a
     preset of the extension's.
     """
-    for built_in in map(presets.load_preset, presets.preset_names()):
-        if preset.key == built_in.key or preset.name.casefold() == built_in.name.casefold():
-            raise ParameterError(f"{preset.name!r} is a preset of the extension's; choose another name")
+    if is_built_in(preset.key, preset.name):
+        raise ParameterError(f"{preset.name!r} is a preset of the extension's; choose another name")
     return presets.save_preset(preset, user_folder())
 
 

@@ -12,7 +12,7 @@ from .presets import GROUPS, Preset
 SHOWN = 24
 """Presets that a search shows."""
 
-COLUMNS = 3
+COLUMNS = 4
 PICTURE_SCALE = 4.0
 """Height of a picture in heights of a button."""
 
@@ -38,14 +38,14 @@ class PresetPopover(bpy.types.Panel):
     bl_space_type = "VIEW_3D"
     bl_region_type = "WINDOW"
     bl_options = {"INSTANCED"}
-    bl_ui_units_x = 28
+    bl_ui_units_x = 36
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         state = context.window_manager.nested_dielectric_presets
         found = catalogue()
         layout.prop(state, "search", text="", icon="VIEWZOOM", placeholder="Search by name or tag")
-        columns = layout.split(factor=0.27)
+        columns = layout.split(factor=0.21)
         groups = columns.column(align=True)
         groups.enabled = not state.search.strip()
         shown = found.groups()

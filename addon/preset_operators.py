@@ -9,7 +9,14 @@ from .materials import measured_depth
 from .operators import active_medium
 from .parameters import ParameterError
 from .preferences import DEPTHS, EDITED, FIT, MATERIALS, MEASURED, preference
-from .preset_library import USER_GROUP, catalogue, delete_user_preset, load_preset, save_user_preset
+from .preset_library import (
+    USER_GROUP,
+    catalogue,
+    delete_user_preset,
+    is_built_in,
+    load_preset,
+    save_user_preset,
+)
 from .preset_materials import edited_material, fit_depth, linked_parameters, preset_from, preset_material, preset_of
 from .preset_pictures import items, own_items, searched_items
 from .presets import GROUPS, key_of, renamed
@@ -200,10 +207,12 @@ class SavePreset(bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         material = active_medium(context)
         made_of = preset_of(material)
-        self.name = self.name or material.name
-        if made_of is not None and made_of.key in catalogue().own:
-            self.group = catalogue().group_of(made_of.key)
-            self.tags, self.text = ", ".join(made_of.tags), made_of.description
+        if not self.name:
+            name = material.name if made_of is None else made_of.name
+            self.name = f"My {name}" if is_built_in("", name) else name
+        if made_of is not None:
+            self.group, self.tags = catalogue().group_of(made_of.key), ", ".join(made_of.tags)
+            self.text = made_of.description
         return context.window_manager.invoke_props_dialog(self, width=360, confirm_text="Save")
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -212,18 +221,20 @@ class SavePreset(bpy.types.Operator):
         layout.use_property_decorate = False
         for name in ("name", "group", "tags", "text"):
             layout.prop(self, name)
-        if self._replaces():
-            layout.label(text=f"Replaces your preset {self.name.strip()}", icon="INFO")
-
-    def _replaces(self) -> bool:
         try:
-            return key_of(self.name) in catalogue().own
+            key = key_of(self.name)
         except ParameterError:
-            return False
+            return
+        if is_built_in(key, self.name.strip()):
+            note = layout.row()
+            note.alert = True
+            note.label(text="The extension has a preset of this name; choose another", icon="ERROR")
+        elif key in catalogue().own:
+            layout.label(text=f"Replaces your preset {catalogue().presets[key].name}", icon="INFO")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         material = active_medium(context)
-        replaces = self._replaces()
+        before = catalogue().own
         try:
             preset = preset_from(material, self.name or material.name, self.group, self.tags.split(","), self.text.strip())
             path = save_user_preset(preset)
@@ -231,8 +242,8 @@ class SavePreset(bpy.types.Operator):
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         for name in linked_parameters(material):
-            self.report({"WARNING"}, f"{material.name!r}: other nodes make {name}; the preset has the socket's own value")
-        self.report({"INFO"}, f"Preset {preset.name} {'replaced' if replaces else 'saved'}: {path}")
+            self.report({"WARNING"}, f"{material.name!r}: other nodes make {name}, which no preset can hold")
+        self.report({"INFO"}, f"Preset {preset.name} {'replaced' if preset.key in before else 'saved'}: {path}")
         return {"FINISHED"}
 
 

@@ -101,7 +101,7 @@ def _items(found: Catalogue) -> tuple[Item, ...]:
 @lru_cache(maxsize=4)
 def _searched_items(found: Catalogue) -> tuple[Item, ...]:
     presets = (preset for members in found.groups().values() for preset in members)
-    return tuple(_item(each, f"{each.name}  ({', '.join((found.group_of(each.key), *each.tags))})") for each in presets)
+    return tuple(_item(each, f"{each.name}  ({', '.join(each.tags)})" if each.tags else each.name) for each in presets)
 
 
 @lru_cache(maxsize=4)

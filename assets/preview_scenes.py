@@ -19,6 +19,7 @@ from nested_dielectric import iced_water
 from nested_dielectric.media import assign
 from nested_dielectric.presets import Preset
 
+CAMERA = Vector((0.0, -2.9, 1.55))
 LIQUID_LEVEL = 0.7
 GLASS, WATER, AIR = "glass", "water", "air_bubble"
 """Presets of what previewed media meet."""
@@ -34,7 +35,11 @@ def kind_of(preset: Preset) -> str:
     if preset.group == "Water and Ice" and words & {"ice", "snow", "glacier", "icicle"}:
         return "ice"
     if preset.group == "Bubbles and Films":
-        return "bubble" if preset.parameters.get("thin_film_thickness") else "air"
+        if not preset.parameters.get("thin_film_thickness"):
+            return "air"
+        if preset.parameters["ior"] > 1.1:
+            return "puddle"
+        return "bubble" if "bubble" in preset.name.lower() else "film"
     return {
         "Glass": "vessel",
         "Gems and Crystals": "gem",
@@ -100,8 +105,42 @@ def _air(scene: bpy.types.Scene, key: str) -> None:
 
 def _bubble(scene: bpy.types.Scene, key: str) -> None:
     """A bubble in the air, and a small one that touches it."""
+    _add_panel(scene, Vector((1.6, -3.4, 1.8)), Vector((0.0, 0.0, 0.5)))
     bubbles = [((-0.04, 0.0, 0.53), 0.5), ((0.42, -0.22, 0.2), 0.16)]
     assign(_add(scene, "Bubbles", iced_water.spheres((Vector(place), radius) for place, radius in bubbles)), key)
+
+
+def _film(scene: bpy.types.Scene, key: str) -> None:
+    """A film in a ring that is held upright."""
+    centre, panel = Vector((0.0, 0.0, 0.5)), Vector((-2.4, -1.4, 2.6))
+    _add_panel(scene, panel, centre)
+    half_way = (CAMERA - centre).normalized() + (panel - centre).normalized()
+    turn = Matrix.Translation(centre) @ half_way.to_track_quat("Z", "Y").to_matrix().to_4x4()
+    shape = bmesh.new()
+    bmesh.ops.create_cone(shape, cap_ends=True, segments=128, radius1=0.46, radius2=0.46, depth=0.002)
+    film = _add(scene, "Film", _mesh(shape))
+    film.matrix_world = turn
+    assign(film, key)
+    ring = bpy.data.curves.new("Ring", "CURVE")
+    ring.dimensions, ring.bevel_depth, ring.resolution_u = "3D", 0.03, 48
+    spline = ring.splines.new("BEZIER")
+    spline.bezier_points.add(3)
+    for index, point in enumerate(spline.bezier_points):
+        point.co = Matrix.Rotation(index * pi / 2.0, 3, "Z") @ Vector((0.46, 0.0, 0.0))
+        point.handle_left_type = point.handle_right_type = "AUTO"
+    spline.use_cyclic_u = True
+    ring.materials.append(_matt("Ring", (0.62, 0.035, 0.03)))
+    _add(scene, "Ring", ring).matrix_world = turn
+
+
+def _puddle(scene: bpy.types.Scene, key: str) -> None:
+    """A puddle with a ball of glass in it."""
+    _add_panel(scene, Vector((0.2, 3.0, 2.0)), Vector((0.0, 0.0, 0.0)), 50.0)
+    profile = ((0.0, 0.003, 0.0), (0.9, 0.003, 0.0), (0.96, 0.03, 0.012), (0.9, 0.055, 0.03), (0.0, 0.06, 0.0))
+    puddle = _add(scene, "Puddle", iced_water.lathe(iced_water.rounded(profile)))
+    puddle.scale = (1.0, 0.8, 1.0)
+    assign(puddle, key)
+    assign(_add(scene, "Ball", iced_water.spheres([(Vector((0.1, 0.1, 0.27)), 0.26)])), GLASS)
 
 
 def _block(scene: bpy.types.Scene, key: str) -> None:
@@ -180,6 +219,8 @@ _KINDS: dict[str, Callable[[bpy.types.Scene, str], None]] = {
     "ball": _ball,
     "air": _air,
     "bubble": _bubble,
+    "film": _film,
+    "puddle": _puddle,
     "block": _block,
     "ice": _ice,
     "gem": _gem,
@@ -193,6 +234,13 @@ def _mesh(shape: bmesh.types.BMesh, smooth: bool = False) -> bpy.types.Mesh:
     if smooth:
         mesh.shade_smooth()
     return mesh
+
+
+def _matt(name: str, colour: tuple[float, float, float]) -> bpy.types.Material:
+    material = bpy.data.materials.new(name)
+    shader = next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+    shader.inputs["Base Color"].default_value = (*colour, 1.0)
+    return material
 
 
 def _add(scene: bpy.types.Scene, name: str, data: bpy.types.ID) -> bpy.types.Object:
@@ -251,11 +299,24 @@ def _add_light(scene: bpy.types.Scene) -> None:
     scene.world = world
 
 
+def _add_panel(scene: bpy.types.Scene, place: Vector, aim: Vector, power: float = 260.0) -> None:
+    """A bright wall that films mirror, as weakly as they do."""
+    lamp = bpy.data.lights.new("Panel", "AREA")
+    lamp.shape = "RECTANGLE"
+    lamp.size, lamp.size_y = 3.6, 2.4
+    lamp.energy = power
+    lamp.use_shadow = False
+    panel = _add(scene, "Panel", lamp)
+    panel.location = place
+    panel.rotation_euler = (place - aim).to_track_quat("Z", "Y").to_euler()
+    panel.visible_diffuse = False
+
+
 def _add_camera(scene: bpy.types.Scene) -> None:
     data = bpy.data.cameras.new("Camera")
     data.lens = 70.0
     camera = _add(scene, "Camera", data)
-    camera.location = (0.0, -2.9, 1.55)
-    aim = camera.location - Vector((0.0, 0.0, 0.47))
+    camera.location = CAMERA
+    aim = CAMERA - Vector((0.0, 0.0, 0.47))
     camera.rotation_euler = aim.to_track_quat("Z", "Y").to_euler()
     scene.camera = camera

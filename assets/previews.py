@@ -30,9 +30,9 @@ import OpenImageIO as oiio  # noqa: E402  Blender's own copy
 EDITION = 1
 """To be counted on when the scenes change, so that all previews are rendered anew."""
 
-SIZE = 192
+SIZE = 160
 SAMPLES = 24
-QUALITY = 88
+QUALITY = 84
 LICENCE = "CC0-1.0"
 
 

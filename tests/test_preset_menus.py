@@ -209,6 +209,28 @@ def test_names_that_are_taken_or_none_are_refused_and_nothing_is_written(ball, f
     assert not folder.exists()
 
 
+def test_the_dialog_begins_with_a_free_name_and_what_the_preset_says_of_itself(ball, monkeypatch):
+    nd.assign(ball, "diamond")
+    operator = SimpleNamespace(name="", group="", tags="", text="")
+    opened = []
+    context = SimpleNamespace(
+        object=ball, window_manager=SimpleNamespace(invoke_props_dialog=lambda *a, **k: opened.append(k) or {"RUNNING_MODAL"})
+    )
+    preset_operators.SavePreset.invoke(operator, context, None)
+    assert (operator.name, operator.group) == ("My Diamond", "Gems and Crystals")
+    assert "jewel" in operator.tags and opened
+
+
+def test_what_other_nodes_make_is_named_when_a_preset_is_saved(ball, capfd):
+    material = nd.new_material("Coated")
+    nd.assign(ball, material)
+    tree = material.node_tree
+    value = tree.nodes.new("ShaderNodeMath")
+    tree.links.new(value.outputs[0], tree.nodes[NODE].inputs["Roughness"])
+    call(SAVE, name="Coated")
+    assert "'Coated': other nodes make Roughness" in "".join(capfd.readouterr())
+
+
 def test_a_file_of_the_users_that_is_called_as_a_built_in_preset_does_not_take_its_place(folder):
     (folder / "x").mkdir(parents=True)
     presets.save_preset(presets.Preset("water", "Wine", "Drinks", (), "", "", {"ior": 2.0}), folder)
