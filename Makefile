@@ -12,7 +12,7 @@ BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli 
 # Small renders mostly wait for one thread that compiles shaders, so two files at a time take half as long.
 PYTEST_OPTIONS := -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: demo test test-quick test-lts bench bench-quick assets extension clean
+.PHONY: demo presets assets test test-quick test-lts bench bench-quick extension clean
 
 demo: $(STAMP)
 	$(PYTHON) -m nested_dielectric demo
@@ -27,6 +27,10 @@ test-quick: $(STAMP)
 # What touches Blender, each claim on few inputs, on the long-term release, and files that cross between both.
 test-lts: $(STAMP) $(LTS_STAMP)
 	ND_OTHER_BLENDER=$(PYTHON) $(LTS_PYTHON) -m pytest $(PYTEST_OPTIONS) -m 'not pure and not again'
+
+# The files of presets, from the tables and formulae in presets/build.
+presets: $(STAMP)
+	$(PYTHON) -m presets.build
 
 bench: $(STAMP)
 	$(PYTHON) benchmarks/bench.py
@@ -51,9 +55,10 @@ $(WHEEL): | $(STAMP)
 
 # pyproject.toml pins everything; the long-term release takes the place of its Blender.
 REQUIREMENTS = $(@D)/bin/python -c 'import tomllib; p = tomllib.load(open("pyproject.toml", "rb")); \
-  found = p["project"]["dependencies"] + p["project"]["optional-dependencies"]["test"]; \
-  lts = p["tool"]["nested-dielectric"]["lts"]; \
-  print(*[lts if "$(@D)" == ".venv-lts" and each.startswith("bpy==") else each for each in found])'
+  extras = p["project"]["optional-dependencies"]; \
+  lts = p["tool"]["nested-dielectric"]["lts"] if "$(@D)" == ".venv-lts" else None; \
+  found = p["project"]["dependencies"] + extras["test"] + ([] if lts else extras["presets"]); \
+  print(*[lts if lts and each.startswith("bpy==") else each for each in found])'
 
 .venv/.installed .venv-lts/.installed: pyproject.toml
 	@python=$$(python3.13 -c 'import sys; print(sys.executable)' 2>/dev/null \

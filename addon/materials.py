@@ -27,7 +27,7 @@ from .parameters import (
 from .preset_library import load_preset
 from .presets import Preset
 from .spectra import SpectrumError, spectral_table
-from .trees import dielectric_places, shows_dielectric, shows_other_volume, value_socket
+from .trees import complete_nodes, dielectric_places, shows_dielectric, shows_other_volume, value_socket
 from .working_space import working_gamut
 
 _SOCKET_KINDS = {"FLOAT": "VALUE", "BOOL": "BOOLEAN", "COLOR": "RGBA", "INDEX": "INT"}
@@ -42,6 +42,9 @@ KEY_PROPERTY = "nd_preset_key"
 
 DEPTH = BY_KEYWORD["transmittance_depth"]
 
+
+LUMINANCE = (0.2126, 0.7152, 0.0722)
+"""Of linear red, green and blue (ITU-R BT.709)."""
 
 _looked_up: dict[tuple, Any] | None = None
 """What functions of :func:`looked_up_once` returned in the outermost block of :func:`unchanged_nodes`."""
@@ -99,10 +102,7 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
     material = bpy.data.materials.new(name)
     tree = material.node_tree
     tree.nodes.clear()
-    node = tree.nodes.new("ShaderNodeGroup")
-    node.node_tree = group
-    node.name = GROUP_NAME
-    node.width = 260.0
+    node = _new_node(tree, group)
     for target, height, sockets in (
         ("CYCLES", 0.0, {"Surface": node_group.CYCLES_OUTPUT, "Volume": node_group.VOLUME_OUTPUT}),
         ("EEVEE", -160.0, {"Surface": node_group.PREVIEW_OUTPUT}),
@@ -128,6 +128,44 @@ def measured_depth(preset: Preset) -> float:
     if not preset.has_colour:
         return preset.depth
     return DEPTH.bounded(preset.depth / bpy.context.scene.unit_settings.scale_length)
+
+
+def _new_node(tree: bpy.types.NodeTree, group: bpy.types.NodeTree) -> bpy.types.ShaderNodeGroup:
+    node = tree.nodes.new("ShaderNodeGroup")
+    node.node_tree = group
+    node.name = GROUP_NAME
+    node.width = node_group.NODE_WIDTH
+    node_group.hide_internals(node)
+    return node
+
+
+def add_node(material: bpy.types.Material, tree: bpy.types.NodeTree) -> tuple[bpy.types.ShaderNodeGroup, bool]:
+    """Add a nested dielectric's node to a material's nodes, or to a group in them, and plug it into the material's outputs
+    where nothing but a bare Principled BSDF stands in its place; return it, and whether it is plugged in.
+
+    Raises :class:`~nested_dielectric.compatibility.UnsupportedError` when this Blender compiles no OSL; nothing has been
+    added then.
+    """
+    node = _new_node(tree, node_group.ensure_group())
+    if tree != material.node_tree:
+        return node, False
+    output = tree.get_output_node("CYCLES")
+    if output is None:
+        output = tree.nodes.new("ShaderNodeOutputMaterial")
+        output.location = node.location[0] + node_group.NODE_WIDTH + 80.0, node.location[1]
+    sources = [link.from_node for link in output.inputs["Surface"].links]
+    if any(not _is_bare_principled(source) for source in sources):
+        return node, False
+    tree.links.new(node.outputs[node_group.CYCLES_OUTPUT], output.inputs["Surface"])
+    complete_nodes(material)
+    refresh_spectrum(material)
+    material.use_transparent_shadow = True
+    return node, True
+
+
+def _is_bare_principled(node: bpy.types.Node) -> bool:
+    """Whether a node is as a new material has it: nothing is plugged in."""
+    return node.type == "BSDF_PRINCIPLED" and not any(socket.is_linked for socket in node.inputs)
 
 
 def set_parameter(node: bpy.types.ShaderNodeGroup, parameter: Parameter, value: Any) -> None:
@@ -162,6 +200,23 @@ def absorption_coefficients(node: bpy.types.ShaderNodeGroup) -> tuple[float, flo
     if depth <= 0.0:
         return 0.0, 0.0, 0.0
     return tuple(-math.log(min(max(channel, 1e-6), 1.0)) / depth for channel in left)
+
+
+def half_distance(node: bpy.types.ShaderNodeGroup) -> float | None:
+    """Return after how many scene units half of white light's luminance is left in a nested dielectric; None if it absorbs
+    nothing, or leaves a part of the light alone that is more than half.
+    """
+    weights = np.array(LUMINANCE)
+    coefficients = np.array(absorption_coefficients(node))
+    if weights @ (coefficients <= 0.0) >= 0.5:
+        return None
+    low, high = 0.0, 1.0
+    while weights @ np.exp(-coefficients * high) > 0.5:
+        high *= 2.0
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if weights @ np.exp(-coefficients * middle) > 0.5 else (low, middle)
+    return high
 
 
 @looked_up_once

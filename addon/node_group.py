@@ -16,7 +16,17 @@ from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
 from .contacts import FACES, PROBE
 from .dispersion import mean_cauchy_distances
 from .identity import NO_SCENE, SCENE_PROPERTY
-from .parameters import BY_KEYWORD, GROUP_NAME, LARGEST, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS, Parameter
+from .parameters import (
+    BASIC_KEYWORDS,
+    BASICS,
+    BY_KEYWORD,
+    GROUP_NAME,
+    LARGEST,
+    NEIGHBOUR_PARAMETERS,
+    PRIORITY_PROPERTY,
+    SOCKETS,
+    Parameter,
+)
 from .shader_source import inlined_source
 from .spectral_images import ensure_row, holds, read_rows
 
@@ -26,6 +36,9 @@ LIGHT_FILE = "light.osl"
 MASK_FILE = "volume_mask.osl"
 MATERIAL_SLOTS = 8
 """As in osl/medium.h: slots of an object in which neighbours look for its dielectric."""
+
+NODE_WIDTH = 320
+"""Of the group's node: the longest name of a socket beside its value."""
 
 CYCLES_OUTPUT = "Surface"
 VOLUME_OUTPUT = "Volume"
@@ -199,6 +212,7 @@ def ensure_group() -> bpy.types.NodeTree:
     tree = bpy.data.node_groups.new(GROUP_NAME, "ShaderNodeTree")
     tree[VERSION_PROPERTY] = MATERIAL_VERSION
     tree.description = "A dielectric that knows the media it touches"
+    tree.default_group_node_width = NODE_WIDTH
     _add_sockets(tree)
     _add_nodes(tree, scripts)
     return tree
@@ -278,6 +292,12 @@ class Script:
 def make_script(name: str, source: str) -> Script:
     """Compile a shader; raises as :func:`compiled` does."""
     return Script(name, source, compiled(source))
+
+
+def hide_internals(node: bpy.types.ShaderNodeGroup) -> None:
+    """Leave the sockets on a node that are an artist's, not those that the extension sets."""
+    for name in (*_ANALYSIS_SOCKETS, TABLE_SOCKET, MEANS_SOCKET):
+        node.inputs[name].hide = True
 
 
 def has_analysis(node: bpy.types.ShaderNodeGroup) -> bool:
@@ -398,7 +418,7 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
     for parameter in SOCKETS:
         if parameter.panel not in panels:
-            panels[parameter.panel] = interface.new_panel(parameter.panel, default_closed=bool(panels))
+            panels[parameter.panel] = interface.new_panel(parameter.panel, default_closed=True)
         socket = interface.new_socket(
             parameter.name,
             in_out="INPUT",
@@ -425,6 +445,14 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
     )
     table.hide_value = means.hide_value = True
     _add_fact_sockets(interface)
+    _put_basics_first(interface, panels[BASICS])
+
+
+def _put_basics_first(interface: bpy.types.NodeTreeInterface, panel: bpy.types.NodeTreeInterfacePanel) -> None:
+    """Moved after all have been made: what keyframes know sockets by is the order in which they are made."""
+    for place, keyword in enumerate(BASIC_KEYWORDS):
+        interface.move(interface.items_tree[BY_KEYWORD[keyword].name], place)
+    interface.remove(panel, move_content_to_parent=True)
 
 
 def _add_fact_sockets(interface: bpy.types.NodeTreeInterface) -> None:
@@ -442,8 +470,7 @@ def _add_fact_sockets(interface: bpy.types.NodeTreeInterface) -> None:
         socket_type="NodeSocketFloat",
         description="1 where the medium fills a point, 0 where another wins: for the density of a volume of your own",
     )
-    for item in (panel, mask):
-        interface.move(item, len((CYCLES_OUTPUT, VOLUME_OUTPUT, PREVIEW_OUTPUT)))
+    interface.move(mask, len((CYCLES_OUTPUT, VOLUME_OUTPUT, PREVIEW_OUTPUT)))
 
 
 def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:

@@ -12,6 +12,7 @@ from .choice import Choice
 from .compatibility import UnsupportedError, blender_problem
 from .dispersion import LINE_D, sellmeier_ior
 from .materials import (
+    dielectric_node,
     get_parameter,
     medium_material,
     rendered_node,
@@ -79,7 +80,10 @@ def _illuminants() -> tuple[str, ...]:
 
 
 def active_medium(context: bpy.types.Context) -> bpy.types.Material | None:
-    """The nested dielectric material of the active object, or None if that is no medium."""
+    """The nested dielectric that the Material properties show, or else that of the active object; None if it has none."""
+    shown = getattr(context, "material", None)
+    if dielectric_node(shown) is not None:
+        return shown
     return None if context.object is None else medium_material(context.object)
 
 

@@ -9,6 +9,7 @@ sockets.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Any
@@ -42,7 +43,8 @@ class Parameter:
     ``kind`` is one of ``INT``, ``FLOAT``, ``BOOL``, ``COLOR`` (scene-linear RGB), ``VECTOR``, ``MENU``, ``INDEX`` (a
     word in Python, its place among the choices in the socket: neighbours cannot read menus), ``TEXT`` and
     ``SHADER``; ``minimum`` and ``maximum`` are hard limits, ``unit`` the subtype of the socket (``FACTOR``,
-    ``DISTANCE``, ``WAVELENGTH``, ``DIRECTION`` or empty).
+    ``DISTANCE``, ``WAVELENGTH``, ``DIRECTION`` or empty). ``label`` is a shorter name for panels whose heading says the
+    rest; ``needs`` are keywords of which one must not be 0, off or white for this parameter to show in the picture.
     """
 
     name: str
@@ -54,6 +56,8 @@ class Parameter:
     maximum: float | None = None
     unit: str = ""
     choices: tuple[Choice, ...] = ()
+    label: str = ""
+    needs: tuple[str, ...] = ()
 
     @property
     def keyword(self) -> str:
@@ -197,54 +201,68 @@ DISPERSION_MODELS = (
     Choice("JF", "JF", "The spread of JF Nested Dielectric, for scenes that come from there"),
 )
 
+BASICS = "Basics"
+"""Panel of what artists change first; the node shows it without a heading, in the order of :data:`BASIC_KEYWORDS`."""
+
+BASIC_KEYWORDS = ("transmittance", "transmittance_depth", "ior", "roughness", "priority")
+
 SPECTRUM_PANEL = "Spectrum"
+
+LAMPS_BY_LOBE = "lamps_by_lobe"
+"""Stands among what parameters need for lamps of the scene that the lobes of direct refraction and reflection carry."""
 
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "Priority",
-        "Medium",
+        BASICS,
         "INT",
         0,
-        "Where media overlap the lowest number wins; equal numbers are one medium. "
-        "An object's own priority overrides this one",
+        "Which medium fills the space where two overlap: the one with the lower number, whose shape stays whole. "
+        "Equal numbers melt into one medium. An object's own priority overrides this one",
         0,
         MAX_PRIORITY,
     ),
     Parameter(
         "IOR",
-        "Medium",
+        BASICS,
         "FLOAT",
         1.33,
-        "Index of refraction against vacuum, at 587.56 nm. Keep it unlinked: neighbours read its value",
+        "How strongly light bends and how much the surface reflects: 1 is air and invisible, water 1.33, glass "
+        "1.52, diamond 2.42. Measured against vacuum at 587.56 nm. Keep it unlinked: neighbours read its value",
         0.01,
         100.0,
     ),
     Parameter(
         "Transmittance",
-        "Medium",
+        BASICS,
         "COLOR",
         (1.0, 1.0, 1.0),
-        "Colour left of white light after it has travelled Transmittance Depth in the medium",
+        "Colour that white light has after it has gone Depth far through the medium: what is thinner looks paler, "
+        "what is thicker darker",
         0.0,
         1.0,
+        label="Colour",
     ),
     Parameter(
         "Transmittance Depth",
-        "Medium",
+        BASICS,
         "FLOAT",
         1.0,
-        "Distance after which Transmittance is left, in scene units; 0 switches absorption off",
+        "How far light goes through the medium until it has Colour, in scene units: make it the object's "
+        "thickness to see just that colour, larger for a paler medium. 0 is a colourless medium",
         0.0,
         1e6,
         "DISTANCE",
+        label="Depth",
+        needs=("transmittance",),
     ),
     Parameter(
         "Disperse",
         "Dispersion",
         "BOOL",
         False,
-        "Light that enters or leaves this medium is split into its colours. Colours that are split already are bent by every "
-        "medium's own dispersion, with or without this",
+        "Splits light into its colours where it enters or leaves: rainbows behind prisms, fire in diamonds. "
+        "Colours that another medium has split are bent by this one's own dispersion, with or without this",
     ),
     Parameter(
         "Dispersion Model",
@@ -253,13 +271,15 @@ PARAMETERS: tuple[Parameter, ...] = (
         "ABBE",
         "How the index of refraction changes with the wavelength (in the node: 0 Abbe, 1 Sellmeier, 2 JF)",
         choices=DISPERSION_MODELS,
+        label="Model",
     ),
     Parameter(
         "Abbe",
         "Dispersion",
         "FLOAT",
         55.0,
-        "Abbe number V_d of the Abbe model: the lower, the wider the colours spread; 0 is no dispersion",
+        "Abbe number V_d: the lower, the wider the colours spread. Diamond 55, crown glass 64, dense flint 26; 0 "
+        "is no dispersion",
         0.0,
         1e6,
     ),
@@ -268,7 +288,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Dispersion",
         "VECTOR",
         (1.03961212, 0.231792344, 1.01046945),
-        "Strengths of the Sellmeier model's three terms. The curve is shifted to go through IOR",
+        "Strengths of the Sellmeier formula's three terms, as catalogues of glass print them. The curve is "
+        "shifted to go through IOR",
         -1e4,
         1e4,
     ),
@@ -277,7 +298,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Dispersion",
         "VECTOR",
         (0.00600069867, 0.0200179144, 103.560653),
-        "Squares of the Sellmeier model's three resonances, in square micrometres",
+        "Squares of the Sellmeier formula's three resonances, in square micrometres, as catalogues of glass print "
+        "them",
         0.0,
         1e6,
     ),
@@ -286,16 +308,19 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Dispersion",
         "FLOAT",
         0.03,
-        "Spread of the JF model: the index at 370 nm above that at 780 nm",
+        "Index at 370 nm above that at 780 nm, as JF Nested Dielectric has it: the larger, the wider the colours "
+        "spread",
         -10.0,
         10.0,
+        label="Spread",
     ),
     Parameter(
         "Roughness",
-        "Surface",
+        BASICS,
         "FLOAT",
         0.0,
-        "Roughness of refraction, and of reflection unless that is separate (alpha is its square)",
+        "Frosts the surface: what is seen through it and mirrored in it blurs. 0 is polished; reflections follow "
+        "unless they are separate (alpha is its square)",
         0.0,
         1.0,
         "FACTOR",
@@ -305,84 +330,97 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Surface",
         "MENU",
         "MULTI_GGX",
-        "Distribution of microfacet normals of a rough surface",
+        "Shape of the blur of a rough surface: how sharp its middle is and how wide its glow",
         choices=DISTRIBUTIONS,
+        needs=("roughness", LAMPS_BY_LOBE, "direct_world"),
     ),
     Parameter(
         "Anisotropy",
         "Surface",
         "FLOAT",
         0.0,
-        "Stretches rough refraction and reflection across (positive) or along (negative) the tangent",
+        "Stretches the blur of a rough surface across (positive) or along (negative) the tangent, as brushed or "
+        "drawn glass does",
         -0.99,
         0.99,
+        needs=("roughness", LAMPS_BY_LOBE, "direct_world"),
     ),
     Parameter(
         "Separate Reflection",
         "Surface",
         "BOOL",
         False,
-        "Reflection has a lobe of its own, by the three values below",
+        "Lets reflections have a roughness of their own, such as a sharp varnish on frosted glass",
     ),
     Parameter(
         "Reflection Roughness",
         "Surface",
         "FLOAT",
         0.0,
-        "Roughness of separate reflection",
+        "Blurs what is mirrored in the surface; what is seen through it keeps Roughness",
         0.0,
         1.0,
         "FACTOR",
+        needs=("separate_reflection",),
     ),
     Parameter(
         "Reflection Distribution",
         "Surface",
         "MENU",
         "MULTI_GGX",
-        "Distribution of microfacet normals of separate reflection",
+        "Shape of the blur of separate reflections",
         choices=DISTRIBUTIONS,
+        needs=("reflection_roughness",),
     ),
     Parameter(
         "Reflection Anisotropy",
         "Surface",
         "FLOAT",
         0.0,
-        "Stretches separate reflection across (positive) or along (negative) the tangent",
+        "Stretches the blur of separate reflections across (positive) or along (negative) the tangent",
         -0.99,
         0.99,
+        needs=("reflection_roughness",),
     ),
     Parameter(
         "Tangent From",
         "Surface",
         "MENU",
         "TANGENT",
-        "Direction along the surface that anisotropy refers to",
+        "Which way along the surface anisotropy stretches the blur",
         choices=TANGENTS,
+        needs=("anisotropy", "reflection_anisotropy", "direct_anisotropy"),
     ),
     Parameter(
         "Tangent",
         "Surface",
         "VECTOR",
         (0.0, 0.0, 0.0),
-        "Tangent for anisotropy; without a link, around the object's Z axis",
+        "Way along the surface that anisotropy refers to: plug in a Tangent node; without a link it runs around "
+        "the object's Z axis",
         unit="DIRECTION",
+        needs=("anisotropy", "reflection_anisotropy", "direct_anisotropy"),
     ),
     Parameter(
         "Blur Anisotropic Poles",
         "Surface",
         "FLOAT",
         0.0,
-        "Makes anisotropic lobes round where the normal points along the axis of the tangents: 1 everywhere, 0 nowhere",
+        "Makes the blur round where the normal points along the axis of the tangents, which hides the star there: "
+        "1 everywhere, 0 nowhere",
         0.0,
         1.0,
         "FACTOR",
+        label="Blur Poles",
+        needs=("anisotropy", "reflection_anisotropy", "direct_anisotropy"),
     ),
     Parameter(
         "Normal",
         "Surface",
         "VECTOR",
         (0.0, 0.0, 0.0),
-        "Normal or bump map; without a link, the surface's own normal",
+        "Bends the surface as light sees it: plug in a Bump or Normal Map node. Without a link it is smooth as "
+        "modelled",
         unit="DIRECTION",
     ),
     Parameter(
@@ -390,331 +428,414 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Thin Film",
         "FLOAT",
         0.0,
-        "Thickness of an interfering film on the surface, in nm; 0 is none",
+        "Thickness in nanometres of a film on the surface, whose interference colours reflections as on a soap "
+        "bubble or oil on water: 100 to 1000 shows most colour, 0 is none",
         0.0,
         100000.0,
         "WAVELENGTH",
+        label="Thickness",
     ),
-    Parameter("Thin Film IOR", "Thin Film", "FLOAT", 1.33, "Index of refraction of the film", 1.0, 100.0),
+    Parameter(
+        "Thin Film IOR",
+        "Thin Film",
+        "FLOAT",
+        1.33,
+        "Index of refraction of the film: the further from that of what is on both sides, the stronger its "
+        "colours",
+        1.0,
+        100.0,
+        label="IOR",
+        needs=("thin_film_thickness",),
+    ),
     Parameter(
         "Refraction Scale",
         "Reflection and Refraction",
         "FLOAT",
         1.0,
-        "Scales all refraction; 1 is physical",
+        "Darkens what is seen through the surface: 1 is physical, 0 lets nothing through",
         0.0,
         1.0,
         "FACTOR",
+        label="Refraction",
     ),
     Parameter(
         "Specular Scale",
         "Reflection and Refraction",
         "FLOAT",
         1.0,
-        "Scales all reflection; 1 is physical",
+        "Darkens what is mirrored in the surface: 1 is physical, 0 mirrors nothing",
         0.0,
         1.0,
         "FACTOR",
+        label="Reflection",
     ),
     Parameter(
         "Refract Sky",
         "Reflection and Refraction",
         "BOOL",
         True,
-        "Rays that leave all media see the world where they meet nothing else",
+        "Shows the world behind the medium. Off, what is seen through it is black where nothing else stands there",
     ),
     Parameter(
         "Reflect Sky",
         "Reflection and Refraction",
         "BOOL",
         True,
-        "Rays that the outside reflects see the world where they meet nothing else",
+        "Mirrors the world in the medium's outside. Off, reflections are black where nothing else stands there",
     ),
     Parameter(
         "Direct Refraction",
         "Direct Light",
         "FLOAT",
         1.0,
-        "Scales the light of lamps that a lobe of its own refracts where light leaves all media. It carries the lamps "
-        "whose Ray Visibility has Transmission off; all others are seen by rays",
+        "Brightness of the highlights that small lamps make through the medium, drawn without the noise of rays. "
+        "For lamps whose Ray Visibility has Transmission off; rays see all others",
         0.0,
         1.0,
         "FACTOR",
+        label="Refraction",
+        needs=(LAMPS_BY_LOBE,),
     ),
     Parameter(
         "Direct Reflection",
         "Direct Light",
         "FLOAT",
         1.0,
-        "Scales the light of lamps that the lobe of reflection takes where light enters from air. It carries the lamps whose "
-        "Ray Visibility has Glossy off",
+        "Brightness of the highlights that small lamps make on the medium's outside, drawn without the noise of "
+        "rays. For lamps whose Ray Visibility has Glossy off",
         0.0,
         1.0,
         "FACTOR",
+        label="Reflection",
+        needs=(LAMPS_BY_LOBE,),
     ),
     Parameter(
         "Separate Direct Lobe",
         "Direct Light",
         "BOOL",
         False,
-        "Direct refraction has a lobe by the three values below; off, it takes the refraction's",
+        "Gives highlights of refracted lamps the roughness below; off, they are as rough as refraction is",
+        label="Separate Highlights",
+        needs=(LAMPS_BY_LOBE, "direct_world"),
     ),
     Parameter(
         "Direct Roughness",
         "Direct Light",
         "FLOAT",
         0.0,
-        "Roughness of the separate direct lobe",
+        "Size of separate highlights of refracted lamps",
         0.0,
         1.0,
         "FACTOR",
+        label="Roughness",
+        needs=("separate_direct_lobe",),
     ),
     Parameter(
         "Direct Distribution",
         "Direct Light",
         "MENU",
         "GGX",
-        "Distribution of microfacet normals of the separate direct lobe; Multiscatter GGX is GGX here",
+        "Shape of separate highlights of refracted lamps; Multiscatter GGX is GGX here",
         choices=DISTRIBUTIONS,
+        label="Distribution",
+        needs=("separate_direct_lobe",),
     ),
     Parameter(
         "Direct Anisotropy",
         "Direct Light",
         "FLOAT",
         0.0,
-        "Stretches the separate direct lobe across (positive) or along (negative) the tangent",
+        "Stretches separate highlights of refracted lamps across (positive) or along (negative) the tangent",
         -0.99,
         0.99,
+        label="Anisotropy",
+        needs=("separate_direct_lobe",),
     ),
     Parameter(
         "Direct Roughness Offset",
         "Direct Light",
         "FLOAT",
         0.05,
-        "Added to the roughness of direct refraction",
+        "Makes highlights of refracted lamps larger and softer than refraction is, so that small lamps show",
         0.0,
         1.0,
         "FACTOR",
+        label="Roughness Offset",
+        needs=(LAMPS_BY_LOBE, "direct_world"),
     ),
     Parameter(
         "Direct Roughness Depth Multiplier",
         "Direct Light",
         "FLOAT",
         1.0,
-        "The roughness of direct refraction is multiplied by this for every bounce before",
+        "Makes those highlights larger with every bounce before: their roughness is multiplied by this each time",
         0.0,
         10.0,
+        label="Depth Multiplier",
+        needs=(LAMPS_BY_LOBE, "direct_world"),
     ),
     Parameter(
         "Direct Roughness Depth Adder",
         "Direct Light",
         "FLOAT",
         0.0,
-        "Added to the roughness of direct refraction for every bounce before",
+        "Makes those highlights larger with every bounce before: this is added to their roughness each time",
         0.0,
         1.0,
         "FACTOR",
+        label="Depth Adder",
+        needs=(LAMPS_BY_LOBE, "direct_world"),
     ),
     Parameter(
         "Direct Second Scale",
         "Direct Light",
         "FLOAT",
         0.0,
-        "Share of direct refraction in a second, wider lobe",
+        "Share of those highlights' light in a second, wider glow around them",
         0.0,
         1.0,
         "FACTOR",
+        label="Second Scale",
+        needs=(LAMPS_BY_LOBE,),
     ),
     Parameter(
         "Direct Second Roughness Multiplier",
         "Direct Light",
         "FLOAT",
         2.0,
-        "Roughness of the second lobe over that of the first",
+        "Size of the second glow over that of the highlight",
         0.0,
         100.0,
+        label="Second Multiplier",
+        needs=("direct_second_scale",),
     ),
     Parameter(
         "Direct World",
         "Direct Light",
         "BOOL",
         False,
-        "Where refracted rays would see the world, they see it as rough as direct refraction is",
+        "Where the world is seen through the medium, it is as blurred as those highlights are",
+        label="Blur World",
     ),
     Parameter(
         "Polarize",
         "Polarizing Filter",
         "BOOL",
         False,
-        "The camera looks at the first surface through a polarizing filter",
+        "Looks at the first surface through a polarizing filter, which takes away or keeps its reflections",
     ),
     Parameter(
         "Polarization Angle",
         "Polarizing Filter",
         "FLOAT",
         0.0,
-        "Angle of the filter's axis, clockwise from the camera's vertical",
+        "Turns the filter, clockwise from the camera's vertical: at 0 reflections on level water vanish near 53 "
+        "degrees",
         -1e4,
         1e4,
         "ANGLE",
+        label="Angle",
+        needs=("polarize",),
     ),
     Parameter(
         "Internal Reflections",
         "Sampling",
         "BOOL",
         True,
-        "Weak reflections inside media; total internal reflection stays when they are off",
+        "Shows weak reflections inside media. Off is darker and less noisy; total reflection stays",
     ),
     Parameter(
         "Max Interior Reflections",
         "Sampling",
         "INT",
         UNLIMITED_REFLECTIONS,
-        "A path that has been reflected this often is not reflected inside media any more. Cycles' glossy bounces end it, "
-        "too",
+        "A path that has been reflected this often is not reflected inside media any more: fewer render faster, "
+        "and sparkle less. Cycles' glossy bounces end it, too",
         0,
         UNLIMITED_REFLECTIONS,
+        label="Max Reflections",
     ),
     Parameter(
         "Reflection Probability",
         "Sampling",
         "FLOAT",
         1.0,
-        "Weak reflections inside media are traced this often, and are brighter by as much: the picture keeps its "
-        "brightness, the noise moves. 0 and 1 leave the choice to Cycles",
+        "How often weak reflections inside media are traced: less often is faster and noisier at the same "
+        "brightness. 0 and 1 leave the choice to Cycles",
         0.0,
         1.0,
         "FACTOR",
+        label="Probability",
+        needs=("internal_reflections",),
     ),
     Parameter(
         "Energy Cutoff Exponent",
         "Sampling",
         "FLOAT",
         -20.0,
-        "A surface gives up reflection or refraction that carries less than 10 to this power of the light on the ray; "
-        "-20 gives up nothing",
+        "Gives up reflection or refraction that carries less than 10 to this power of the light, which darkens "
+        "deep reflections. -20 gives up nothing",
         -20.0,
         0.0,
+        label="Energy Cutoff",
     ),
     Parameter(
         "Caustic Refraction",
         "Caustics",
         "BOOL",
         True,
-        "Light that reaches diffuse surfaces on paths refracted by this medium",
+        "Bright patterns that light refracted by this medium throws on other surfaces",
+        label="Refraction",
     ),
     Parameter(
         "Caustic Reflection",
         "Caustics",
         "BOOL",
         True,
-        "Light that reaches diffuse surfaces on paths reflected by the outside",
+        "Bright patterns that light mirrored by the medium's outside throws on other surfaces",
+        label="Reflection",
     ),
     Parameter(
         "Caustic Total Reflection",
         "Caustics",
         "BOOL",
         True,
-        "Light that reaches diffuse surfaces on paths reflected totally inside",
+        "Bright patterns of light that was reflected totally inside the medium",
+        label="Total Reflection",
     ),
     Parameter(
         "Caustic Internal Reflections",
         "Caustics",
         "BOOL",
         True,
-        "Light that reaches diffuse surfaces on paths reflected weakly inside",
+        "Bright patterns of light that was weakly reflected inside the medium",
+        label="Internal Reflections",
+        needs=("internal_reflections",),
     ),
     Parameter(
         "Caustic Dispersion",
         "Caustics",
         "BOOL",
         True,
-        "Light that reaches diffuse surfaces is split into its colours, also by shadow caustics",
+        "Splits bright patterns on other surfaces into colours, also those of shadow caustics",
+        label="Dispersion",
+        needs=("disperse",),
     ),
     Parameter(
         "Caustic Direct Refraction",
         "Caustics",
         "BOOL",
         True,
-        "Light of lamps that direct refraction sends to diffuse surfaces",
+        "Light of small lamps that direct refraction throws on other surfaces",
+        label="Direct Refraction",
+        needs=(LAMPS_BY_LOBE,),
     ),
     Parameter(
         "Caustic Direct Reflection",
         "Caustics",
         "BOOL",
         True,
-        "Light of lamps that direct reflection sends to diffuse surfaces",
+        "Light of small lamps that direct reflection throws on other surfaces",
+        label="Direct Reflection",
+        needs=(LAMPS_BY_LOBE,),
     ),
     Parameter(
         "Caustic Roughness Offset",
         "Caustics",
         "FLOAT",
         0.1,
-        "Added to the roughness of direct refraction on its way to diffuse surfaces",
+        "Softens the light that direct refraction throws on other surfaces",
         0.0,
         1.0,
         "FACTOR",
+        label="Roughness Offset",
+        needs=(LAMPS_BY_LOBE, "direct_world"),
     ),
     Parameter(
         "Caustic Max Distance",
         "Caustics",
         "FLOAT",
         -1.0,
-        "Light that reaches diffuse surfaces falls off linearly to nothing at this distance of the surface from the "
-        "medium; below 0 it does not",
+        "Bright patterns fade to nothing on surfaces this far from the medium; below 0 they do not",
         -1.0,
         1e6,
         "DISTANCE",
+        label="Max Distance",
     ),
     Parameter(
         "Shadow Mode",
         "Shadows",
         "MENU",
         "OUTSIDE_FRESNEL",
-        "What light that goes straight through leaves in shadows",
+        "How dark and coloured the medium's shadows are, which stand in for caustics",
         choices=SHADOW_MODES,
+        label="Shadow",
     ),
     Parameter(
         "Emission at Interfaces",
         "Emission",
         "SHADER",
         None,
-        "Shader added at every interface between two media or a medium and air",
+        "Shader that glows wherever two media, or a medium and air, meet",
+        label="At Interfaces",
     ),
-    Parameter("Emission at Entrances", "Emission", "SHADER", None, "Shader added where a ray enters a medium from air"),
-    Parameter("Emission at Exits", "Emission", "SHADER", None, "Shader added where a ray leaves all media into air"),
+    Parameter(
+        "Emission at Entrances",
+        "Emission",
+        "SHADER",
+        None,
+        "Shader that glows where rays enter a medium from air",
+        label="At Entrances",
+    ),
+    Parameter(
+        "Emission at Exits",
+        "Emission",
+        "SHADER",
+        None,
+        "Shader that glows where rays leave all media into air",
+        label="At Exits",
+    ),
     Parameter(
         "Spectral Distribution",
         SPECTRUM_PANEL,
         "TEXT",
         "DAYLIGHT",
-        "Light that is split into colours; its mix is always white: a word of the list below, a CIE illuminant such as `FL11`, or a "
-        "CSV file of wavelength (nm) and power",
+        "Light whose colours are split; its mix is always white: a word of the list below, a CIE illuminant such "
+        "as `FL11`, or a CSV file of wavelength (nm) and power. Fluorescent lamps show bands, daylight all "
+        "colours",
+        label="Light",
+        needs=("disperse",),
     ),
     Parameter(
         "Spectral Gamut",
         SPECTRUM_PANEL,
         "MENU",
         "SCENE",
-        "Colour space of the split colours",
+        "Colour space that split colours are made in: wider ones keep them purer",
         choices=spectra.GAMUTS,
+        label="Gamut",
+        needs=("disperse",),
     ),
     Parameter(
         "Spectral Saturation",
         SPECTRUM_PANEL,
         "FLOAT",
         1.0,
-        "Mixes the split colours to greys of their luminance, before negative ones are clamped",
+        "Mixes split colours to greys of their brightness; 1 is physical",
         0.0,
         1.0,
         "FACTOR",
+        label="Saturation",
+        needs=("disperse",),
     ),
     Parameter(
         "Clamp Negative",
         SPECTRUM_PANEL,
         "BOOL",
         True,
-        "Cuts off the negative parts of split colours that lie outside the gamut; off, they reach the image",
+        "Cuts off what of split colours lies outside the gamut, which makes them paler; off, negative values "
+        "reach the picture and come right in wider colour spaces",
+        needs=("disperse",),
     ),
 )
 
@@ -735,6 +856,24 @@ NEIGHBOUR_PARAMETERS = (
     *(parameter.name for parameter in PARAMETERS if parameter.panel == "Dispersion"),
 )
 """Sockets whose values other media read while they render; a link into them is not seen by neighbours."""
+
+
+def has_effect(parameter: Parameter, values: Mapping[str, Any]) -> bool:
+    """Tell whether a parameter can show in the picture beside the values of others, by keyword; what is not among them may
+    have any value.
+    """
+    return not parameter.needs or any(_is_at_work(need, values) for need in parameter.needs)
+
+
+def _is_at_work(keyword: str, values: Mapping[str, Any]) -> bool:
+    parameter = BY_KEYWORD.get(keyword)
+    if keyword in values:
+        value = values[keyword]
+        if parameter is not None and parameter.kind == "COLOR":
+            value = tuple(value)[:3] != parameter.default
+        if not value:
+            return False
+    return parameter is None or has_effect(parameter, values)
 
 
 def check_keywords(keywords: dict[str, Any]) -> dict[Parameter, Any]:

@@ -4,6 +4,7 @@ import textwrap
 
 import bpy
 
+from .preferences import FIT, MEASURED
 from .preset_library import USER_GROUP, Catalogue, catalogue
 from .preset_operators import AssignPreset, DeletePreset, FitDepth, RenamePreset, SavePreset
 from .preset_pictures import picture
@@ -19,9 +20,16 @@ PICTURE_SCALE = 4.0
 _GROUP_ITEMS = tuple((group, group, "") for group in (*GROUPS, USER_GROUP))
 
 
-def draw_presets(layout: bpy.types.UILayout) -> None:
+def draw_presets(layout: bpy.types.UILayout, text: str = "Assign Preset") -> None:
     """The button that opens the presets."""
-    layout.popover(PresetPopover.bl_idname, text="Assign Preset", icon="MATERIAL")
+    layout.popover(PresetPopover.bl_idname, text=text, icon="MATERIAL")
+
+
+def draw_fit_depth(layout: bpy.types.UILayout) -> None:
+    """The buttons that fit the active medium's colour to the object, or back to what its preset was measured at."""
+    row = layout.row(align=True)
+    for depth, text in ((FIT, "Fit Depth"), (MEASURED, "As Measured")):
+        row.operator(FitDepth.bl_idname, text=text).depth = depth
 
 
 def draw_object_menu(self: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -102,7 +110,7 @@ class ObjectMenu(bpy.types.Menu):
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         layout.menu(PresetMenu.bl_idname, icon="MATERIAL")
-        for depth, text in (("FIT", "Fit Depth to Object"), ("MEASURED", "Fit Depth as Measured")):
+        for depth, text in ((FIT, "Fit Depth to Object"), (MEASURED, "Fit Depth as Measured")):
             layout.operator(FitDepth.bl_idname, text=text).depth = depth
         layout.operator(SavePreset.bl_idname, text="Save Preset...")
         layout.separator()

@@ -158,13 +158,15 @@ class FitDepth(bpy.types.Operator):
         self.report({"INFO"}, f"{material.name} has its colour in a body {length} thick")
         return {"FINISHED"}
 
-    def wanted(self, obj: bpy.types.Object, material: bpy.types.Material) -> float:
+    def wanted(self, obj: bpy.types.Object | None, material: bpy.types.Material) -> float:
         """The depth to set. Raises :class:`ParameterError` where there is none."""
         if self.depth == MEASURED:
             preset = preset_of(material)
             if preset is None:
                 raise ParameterError(f"{material.name!r} knows no preset; fit its depth to the active object")
             return measured_depth(preset)
+        if obj is None:
+            raise ParameterError("There is no active object to fit the depth to; select one")
         depth = thickness(obj)
         if depth <= 0.0:
             raise ParameterError(f"{obj.name!r} has no thickness; make it a closed mesh")

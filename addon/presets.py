@@ -43,7 +43,9 @@ class Preset:
     :param tags: words by which artists look for it.
     :param description: what it is, in a sentence.
     :param source: where its numbers come from.
-    :param parameters: keyword arguments of :func:`nested_dielectric.new_material`; lengths in metres.
+    :param parameters: keyword arguments of :func:`nested_dielectric.new_material`. Lengths are in metres; ``transmittance`` is
+        scene-linear RGB with the primaries of Rec.709 (sRGB): the colour left of white light after ``transmittance_depth``,
+        the size at which people know the medium.
     """
 
     key: str
@@ -71,6 +73,14 @@ class Preset:
 def preset_names(folder: Path = PRESET_FOLDER) -> tuple[str, ...]:
     """Return the names of all presets in a folder, in alphabetical order."""
     return tuple(sorted(path.stem for path in folder.glob("*.toml")))
+
+
+def all_presets(folder: Path = PRESET_FOLDER) -> tuple[Preset, ...]:
+    """Return all presets, by group in the order of :data:`GROUPS` and by name within a group. Raises as
+    :func:`load_preset` does.
+    """
+    presets = [load_preset(key, folder) for key in preset_names(folder)]
+    return tuple(sorted(presets, key=lambda preset: (GROUPS.index(preset.group), preset.name)))
 
 
 def load_preset(key: str, folder: Path = PRESET_FOLDER) -> Preset:

@@ -8,9 +8,13 @@ from contextlib import ExitStack
 import bpy
 
 from . import (
+    add_menu,
     asset_library,
+    dispersion_panels,
+    lamp_panel,
     live,
     media_list,
+    medium_panels,
     operators,
     panels,
     preferences,
@@ -33,7 +37,10 @@ CLASSES = (
     *operators.CLASSES,
     *preset_operators.CLASSES,
     *preset_menus.CLASSES,
+    *add_menu.CLASSES,
     *panels.CLASSES,
+    *medium_panels.CLASSES,
+    *lamp_panel.CLASSES,
 )
 
 _registered: ExitStack | None = None
@@ -53,10 +60,9 @@ def register() -> None:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
 
-        panels.open_pictures()
-        undo.callback(panels.close_pictures)
-        preset_pictures.open_pictures()
-        undo.callback(preset_pictures.close_pictures)
+        for pictures in (dispersion_panels, preset_pictures):
+            pictures.open_pictures()
+            undo.callback(pictures.close_pictures)
 
         bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
             name="Active Medium", get=panels.get_active, set=panels.set_active, options=set()
@@ -68,8 +74,12 @@ def register() -> None:
         )
         undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_presets")
 
-        bpy.types.VIEW3D_MT_object.prepend(preset_menus.draw_object_menu)
-        undo.callback(bpy.types.VIEW3D_MT_object.remove, preset_menus.draw_object_menu)
+        for add, menu, entry in (
+            ("prepend", bpy.types.VIEW3D_MT_object, preset_menus.draw_object_menu),
+            ("append", bpy.types.NODE_MT_category_shader_shader, add_menu.draw_entry),
+        ):
+            getattr(menu, add)(entry)
+            undo.callback(menu.remove, entry)
 
         asset_library.follow(preferences.preference("asset_library"))
         undo.callback(asset_library.follow, False)

@@ -28,6 +28,7 @@ from .node_group import (
     ensure_group,
     find_group,
     group_version,
+    hide_internals,
     is_offset_group,
     set_table,
     table_of,
@@ -54,15 +55,17 @@ def _update(outdated: list[bpy.types.ShaderNodeGroup]) -> tuple[str, ...]:
         leftovers = _Leftovers()
         for node in outdated:
             leftovers.note(node.node_tree)
-        moved = {}
+        curves_moved, sockets_moved = {}, {}
         for node in outdated:
             before = group_version(node.node_tree)
-            places, lost = _exchange(node, ensure_group())
-            moved.setdefault(node.id_data, {}).update(places)
+            of_curves, of_sockets, lost = _exchange(node, ensure_group())
+            curves_moved.setdefault(node.id_data, {}).update(of_curves)
+            sockets_moved.setdefault(node.id_data, {}).update(of_sockets)
             how = {MATERIAL_VERSION: "one of several copies", DAMAGED: "damaged"}.get(before, f"version {before}")
             changes.append(f"{_owner(node.id_data).name}: was {how}")
             changes += [f"{_owner(node.id_data).name}: {name!r} could not be kept" for name in lost]
-        _follow_sockets(moved)
+        _move_curves(curves_moved)
+        _move_readers(sockets_moved)
     if refresh_lights():
         changes.append("Lamps of direct refraction and reflection: listed again")
     if outdated:
@@ -162,11 +165,17 @@ def _owner(tree: bpy.types.NodeTree) -> bpy.types.ID:
 # Exchanging a group ---------------------------------------------------------------------------------------------------
 
 
-def _exchange(node: bpy.types.ShaderNodeGroup, group: bpy.types.NodeTree) -> tuple[dict[str, str], list[str]]:
-    """Give a node another group. Return where the paths of its sockets have moved, and the names of what could not stay."""
+def _exchange(
+    node: bpy.types.ShaderNodeGroup, group: bpy.types.NodeTree
+) -> tuple[dict[str, str], dict[str, str], list[str]]:
+    """Give a node another group. Return where the paths of its keyframes and drivers are to move, where those of its sockets
+    have moved, and the names of what could not stay.
+
+    Blender moves keyframes and drivers itself, to the sockets of the same number, and leaves what reads sockets.
+    """
     links = node.id_data.links
     table = table_of(node)
-    names = [socket.name for socket in node.inputs]
+    before = [(socket.name, socket.identifier) for socket in node.inputs]
     values = {socket.name: _value(socket) for socket in node.inputs if hasattr(socket, "default_value")}
     hidden = {socket.name for socket in (*node.inputs, *node.outputs) if socket.hide}
     arriving = [(link.from_socket, link.to_socket.name, link.is_muted) for s in node.inputs for link in s.links]
@@ -182,14 +191,21 @@ def _exchange(node: bpy.types.ShaderNodeGroup, group: bpy.types.NodeTree) -> tup
         lost += _join(links, node.outputs.get(name), target, name, muted)
     for socket in (*node.inputs, *node.outputs):
         socket.hide = socket.name in hidden
+    hide_internals(node)
     if table is not None:
         set_table(node, table)
     else:
         lost += _bake_again(_owner(node.id_data))
-    places = {name: place for place, name in enumerate(socket.name for socket in node.inputs)}
+    places = {socket.name: place for place, socket in enumerate(node.inputs)}
+    numbered = {socket.identifier: place for place, socket in enumerate(node.inputs)}
     prefix = f'nodes["{bpy.utils.escape_identifier(node.name)}"].inputs'
-    moved = {f"{prefix}[{old}]": f"{prefix}[{places[name]}]" for old, name in enumerate(names) if name in places}
-    return {old: new for old, new in moved.items() if old != new}, lost
+
+    def paths(moved: Iterable[tuple[int, str]]) -> dict[str, str]:
+        return {f"{prefix}[{at}]": f"{prefix}[{places[name]}]" for at, name in moved if places.get(name, at) != at}
+
+    of_curves = paths((numbered.get(number, at), name) for at, (name, number) in enumerate(before))
+    of_sockets = paths((at, name) for at, (name, _) in enumerate(before))
+    return of_curves, of_sockets, lost
 
 
 def _bake_again(owner: bpy.types.ID) -> list[str]:
@@ -233,20 +249,22 @@ def _join(
     return []
 
 
-def _follow_sockets(moved: dict[bpy.types.NodeTree, dict[str, str]]) -> None:
-    """Let keyframes and drivers follow sockets to their new places: those of the trees, and drivers that read them."""
-    moved = {tree: places for tree, places in moved.items() if places}
-    if not moved:
-        return
+def _move_curves(moved: dict[bpy.types.NodeTree, dict[str, str]]) -> None:
+    """Let keyframes and drivers of trees go to other paths."""
     seen: set[int] = set()
     for tree, places in moved.items():
-        for curve in curves(tree.animation_data):
+        for curve in curves(tree.animation_data) if places else ():
             if curve.as_pointer() not in seen:  # trees may share an action
                 seen.add(curve.as_pointer())
                 curve.data_path = _moved(curve.data_path, places)
+
+
+def _move_readers(moved: dict[bpy.types.NodeTree, dict[str, str]]) -> None:
+    """Let drivers that read sockets of trees follow these to their new places."""
+    moved = {tree: places for tree, places in moved.items() if places}
     prefixes = {(tree, ""): places for tree, places in moved.items()}
     prefixes |= {(_owner(tree), "node_tree."): places for tree, places in moved.items() if tree.is_embedded_data}
-    for data in _all_data():
+    for data in _all_data() if moved else ():
         for curve in data.animation_data.drivers if data.animation_data else ():
             for target in (target for variable in curve.driver.variables for target in variable.targets):
                 for (owner, prefix), places in prefixes.items():

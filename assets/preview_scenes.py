@@ -171,7 +171,8 @@ def _ice(scene: bpy.types.Scene, key: str) -> None:
 
 
 def _gem(scene: bpy.types.Scene, key: str) -> None:
-    """A round brilliant that lies on its side."""
+    """A round brilliant that lies on its side, in light from the front, which its facets send back."""
+    _add_panel(scene, Vector((1.6, -3.6, 3.4)), Vector((0.0, 0.0, 0.4)), 320.0)
     gem = _add(scene, "Gem", brilliant())
     turn = Matrix.Rotation(radians(42), 4, "X") @ Matrix.Rotation(radians(8), 4, "Z") @ Matrix.Scale(0.56, 4)
     lowest = min((turn @ vertex.co).z for vertex in gem.data.vertices)
@@ -300,7 +301,7 @@ def _add_light(scene: bpy.types.Scene) -> None:
 
 
 def _add_panel(scene: bpy.types.Scene, place: Vector, aim: Vector, power: float = 260.0) -> None:
-    """A bright wall that films mirror, as weakly as they do."""
+    """A bright wall that shows in films and facets and lights nothing else."""
     lamp = bpy.data.lights.new("Panel", "AREA")
     lamp.shape = "RECTANGLE"
     lamp.size, lamp.size_y = 3.6, 2.4

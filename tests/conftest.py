@@ -36,3 +36,24 @@ def renders_nothing(request):
     yield
     bpy.app.handlers.render_init.remove(watch)
     assert not renders
+
+
+@pytest.fixture
+def registered():
+    """The extension is registered in an empty scene."""
+    import bpy
+
+    import nested_dielectric as nd
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    nd.register()
+    yield
+    nd.unregister()
+
+
+@pytest.fixture
+def draw(capfd):
+    """Draw a panel in a region of some width, 220 if none is given; see :func:`ui.draw_panel`."""
+    from ui import draw_panel
+
+    return lambda panel, width=220: draw_panel(panel, width, capfd.readouterr)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import nested_dielectric as nd
-from nested_dielectric import presets
+from nested_dielectric import parameters, presets
 from scenes import (
     add_box,
     add_camera,
@@ -46,6 +46,42 @@ def ball(samples=16, **keywords):
     add_camera((0, -5, 0.3), (0, 0, 0), angle=26)
     add_sphere("Ball", 1.0, glass(**keywords))
     return render(samples)
+
+
+def other_value(parameter):
+    """A value far from a parameter's default."""
+    if parameter.kind in ("MENU", "INDEX"):
+        return next(choice.keyword for choice in parameter.choices if choice.keyword != parameter.default)
+    if parameter.kind == "BOOL":
+        return not parameter.default
+    far = 0.5 * (parameter.minimum + parameter.maximum)
+    return far if far != parameter.default else parameter.maximum
+
+
+@pytest.mark.parametrize(
+    "keywords",
+    [
+        {},
+        {"roughness": 0.3, "separate_reflection": True},
+        {"internal_reflections": False, "transmittance": (0.5, 0.8, 0.9)},
+    ],
+)
+def test_what_panels_grey_out_does_not_show_in_the_picture(keywords):
+    numeric = [each for each in parameters.SOCKETS if each.kind not in ("SHADER", "VECTOR")]
+    values = {each.keyword: keywords.get(each.keyword, each.default) for each in numeric} | {"lamps_by_lobe": False}
+    idle = {each.keyword: other_value(each) for each in numeric if not parameters.has_effect(each, values)}
+    assert len(idle) > 15
+
+    def lit_ball(**more):
+        new_scene(24)
+        set_striped_world()
+        add_camera((0, -5, 2), (0, 0, -0.2), angle=36)
+        add_sphere("Ball", 1.0, glass(shadow_mode="ALL_FRESNEL", **keywords, **more))
+        add_plane("Floor", 8.0, (0, 0, -1.1), (0, 0, 1), diffuse())
+        return render(16)
+
+    # The same paths, but for the rounding of closures that are put together otherwise.
+    np.testing.assert_allclose(lit_ball(**idle), lit_ball(), rtol=1e-4, atol=1e-5)
 
 
 # Lobes

@@ -147,7 +147,7 @@ def depth(obj) -> float:
 
 def save_wine(folder):
     wine = presets.Preset(
-        "my_wine", "My Wine", "Drinks", ("red", "merlot"), "Red.", "Invented.",
+        "my_wine", "My Wine", "Drinks", ("red", "homemade"), "Red.", "Invented.",
         {"ior": 1.34, "transmittance": [0.6, 0.1, 0.15], "transmittance_depth": 0.05, "priority": 20},
     )  # fmt: skip
     presets.save_preset(wine, folder)
@@ -263,7 +263,7 @@ def test_a_preset_of_the_users_is_renamed_and_deleted_and_built_in_ones_are_not(
     call(RENAME, preset="my_wine", name="House Wine")
     assert [path.name for path in folder.iterdir()] == ["house_wine.toml"]
     assert preset_library.load_preset("house_wine").name == "House Wine"
-    assert preset_library.load_preset("house_wine").tags == ("red", "merlot")
+    assert preset_library.load_preset("house_wine").tags == ("red", "homemade")
     save_wine(folder)
     for name, words in (("House wine", "another preset of yours"), ("Water", "extension's"), ("", "a letter")):
         with pytest.raises(RuntimeError, match=words):
@@ -354,7 +354,7 @@ def test_the_popover_shows_the_presets_of_a_group_each_with_a_picture(draw):
 
 def test_words_find_presets_of_all_groups_by_name_tag_and_description(draw, folder):
     save_wine(folder)
-    assert buttons(draw(search="MERLOT")) == ["My Wine"]
+    assert buttons(draw(search="HomeMade")) == ["My Wine"]
     assert "Diamond" in buttons(draw(search="gem fire"))
     assert not buttons(draw(search="no such thing"))
     assert buttons(draw("Drinks")).count("My Wine") == 1

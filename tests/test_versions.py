@@ -153,6 +153,7 @@ def make_older(tree: bpy.types.NodeTree) -> bpy.types.NodeTree:
         node.script = node.script.copy()
     items = {item.name: item for item in old.interface.items_tree if item.item_type == "SOCKET"}
     old.interface.move(items["IOR"], 12)
+    old.interface.move(items["Priority"], 4)
     old.interface.new_socket("Gone", in_out="INPUT", socket_type="NodeSocketFloat", parent=items["Priority"].parent)
     old.interface.remove(items["Polarize"])
     return old
@@ -163,16 +164,22 @@ def test_keyframes_and_drivers_follow_sockets_that_moved():
     new = node_group.find_group()
     old = make_older(new)
     names = [socket.name for socket in inputs("Glass")]
+    owners = {
+        name: [
+            names[int(curve.data_path.partition("inputs[")[2].partition("]")[0])]
+            for curve in curves(bpy.data.materials[name].node_tree.animation_data)
+        ]
+        for name in ("Glass", "Water")
+    }
     for material in bpy.data.materials:
         if material.node_tree.nodes.get(NODE):
             material.node_tree.nodes[NODE].node_tree = old
     assert [socket.name for socket in inputs("Glass")] != names
     # The paths as that version would have written them.
     places = {name: place for place, name in enumerate(socket.name for socket in inputs("Glass"))}
-    for name in ("Glass", "Water"):
-        for curve in curves(bpy.data.materials[name].node_tree.animation_data):
-            before = int(curve.data_path.partition("inputs[")[2].partition("]")[0])
-            curve.data_path = curve.data_path.replace(f"inputs[{before}]", f"inputs[{places[names[before]]}]")
+    for name, sockets in owners.items():
+        for curve, socket in zip(curves(bpy.data.materials[name].node_tree.animation_data), sockets, strict=True):
+            curve.data_path = f'nodes["{NODE}"].inputs[{places[socket]}].default_value'
     target = bpy.data.objects["Water"].animation_data.drivers[0].driver.variables[0].targets[0]
     before = names.index("Transmittance Depth")
     after = places["Transmittance Depth"]
