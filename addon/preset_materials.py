@@ -39,7 +39,7 @@ def preset_material(
     """Return a material of a preset for objects: one of this file that is as the preset has it, or else a new one.
 
     Where the preset has a colour, the thickest of the objects shows it: that thickness is the Transmittance Depth. Only a
-    material whose depth is within a factor of :data:`SAME_DEPTH` of it is used again, or one that nothing uses any more.
+    material whose depth is within a factor of :data:`SAME_DEPTH` of it is used again, or one that nothing else uses.
 
     :param fit: False takes the depth at which the preset was measured.
     :param use_edited: take what :func:`edited_material` finds first.
@@ -56,7 +56,7 @@ def preset_material(
     near = [material for material in unchanged if _distance(material, depth) <= SAME_DEPTH]
     if near:
         return min(near, key=lambda material: _distance(material, depth))
-    unused = next((material for material in unchanged if not _is_used(material)), None)
+    unused = next((material for material in unchanged if not _is_used(material, objects)), None)
     material = unused or new_material(loaded.name, preset=preset)
     rendered_node(material).inputs[DEPTH.name].default_value = depth
     return material
@@ -136,10 +136,19 @@ def _distance(material: bpy.types.Material, depth: float) -> float:
     return max(found / depth, depth / found) if found > 0.0 else inf
 
 
-def _is_used(material: bpy.types.Material) -> bool:
-    """Whether an object has a material, or somebody wants it kept; the mesh of a deleted object does not count."""
-    users = bpy.data.user_map(subset={material})[material]
-    return material.use_fake_user or any(isinstance(user, bpy.types.Object) or user.users for user in users)
+def _is_used(material: bpy.types.Material, leaving: Iterable[bpy.types.Object]) -> bool:
+    """Whether an object has a material but those that are to get another in its place, or somebody wants it kept; the mesh
+    of a deleted object does not count.
+    """
+    left = set()
+    for obj in leaving:
+        slots = [slot for slot in obj.material_slots if slot.material == material]
+        if len(slots) == 1 and obj.active_material == material:
+            left.add(obj if slots[0].link == "OBJECT" else obj.data)
+    owners = bpy.data.user_map(subset={material})[material]
+    return material.use_fake_user or any(
+        owner.users > (owner in left) if not isinstance(owner, bpy.types.Object) else owner not in left for owner in owners
+    )
 
 
 def _written(value: Any) -> Any:

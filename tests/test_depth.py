@@ -45,11 +45,11 @@ def cylinder(name: str, radius: float, height: float):
 
 @pytest.mark.parametrize("place", [Matrix(), Matrix.Translation((5, 0, 0)) @ Matrix.Diagonal((1, 1, -1, 1))])
 def test_the_ways_through_bodies_are_as_long_as_closed_forms_say(place):
-    """Two thirds of a ball's diameter (a sphere of 256 segments is 0.02 % smaller), the edge of a cube by two thirds, twice a
+    """Two thirds of a ball's diameter (a sphere of 96 segments is 0.2 % smaller), the edge of a cube by two thirds, twice a
     thin slab's thickness (its sides take 0.2 %), a long cylinder's diameter (its ends take 0.5 %).
     """
     shapes_and_chords = [
-        (add_sphere("Ball", 0.5, segments=256), 2 / 3, 3e-4),
+        (add_sphere("Ball", 0.5, segments=96), 2 / 3, 3e-3),
         (add_box("Cube", (0, 0, 0), (3, 3, 3)), 2.0, 1e-6),
         (add_box("Slab", (0, 0, 0), (10, 10, 0.01)), 0.02, 3e-3),
         (cylinder("Rod", 0.1, 20.0), 0.2, 6e-3),
@@ -103,9 +103,9 @@ def test_no_triangles_have_no_thickness():
 
 @pytest.mark.parametrize("size", [0.07, 7.0])
 def test_red_wine_is_as_red_in_a_ball_of_seven_centimetres_as_in_one_of_seven_units(size):
-    ball = add_sphere("Ball", size / 2, segments=128)
+    ball = add_sphere("Ball", size / 2, segments=64)
     material = nd.assign(ball, "wine")
-    assert depth(material) == pytest.approx(2 / 3 * size, rel=2e-3)
+    assert depth(material) == pytest.approx(2 / 3 * size, rel=5e-3)
     assert tuple(material.node_tree.nodes["Nested Dielectric"].inputs["Transmittance"].default_value)[:3] == pytest.approx(
         (0.6, 0.1, 0.15)
     )
@@ -146,6 +146,24 @@ def test_what_nobody_uses_any_more_takes_the_depth_of_the_next():
     first.use_fake_user = True
     bpy.data.objects.remove(small)
     assert nd.assign(add_sphere("Large", 1.0), "wine") != first
+
+
+def test_an_object_that_has_been_scaled_keeps_its_material_and_shares_it_with_nobody_unasked():
+    ball = add_sphere("Ball", 1.0)
+    material = nd.assign(ball, "wine")
+    ball.scale = (0.05, 0.05, 0.05)
+    assert nd.assign(ball, "wine") == material
+    assert depth(material) == pytest.approx(0.1 * 2 / 3, rel=1e-2)
+    twin = add("Twin", ball.data)
+    twin.scale = (1.0, 1.0, 1.0)
+    ball.scale = (1.0, 1.0, 1.0)
+    assert nd.assign(ball, "wine") != material  # which its twin shows, too, until then
+    own = add_sphere("Own", 0.1)
+    own.data.materials.append(None)
+    own.material_slots[0].link = "OBJECT"
+    third = nd.assign(own, "wine")
+    own.scale = (90.0, 90.0, 90.0)
+    assert nd.assign(own, "wine") == third
 
 
 def test_clear_media_keep_their_depth_and_are_used_again_at_any():
