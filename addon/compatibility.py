@@ -82,10 +82,19 @@ def shows_front_ior() -> bool:
     return any(name in getattr(bpy.types, owner).bl_rna.properties for owner, name in FRONT_IOR_SIGNS.values())
 
 
+def engine_name(engine: str) -> str:
+    """Return the name that an artist knows a render engine by."""
+    known = bpy.types.RenderSettings.bl_rna.properties["engine"].enum_items.get(engine)
+    if known is not None:
+        return known.name
+    engines = bpy.types.RenderEngine.__subclasses__()
+    return next((each.bl_label for each in engines if getattr(each, "bl_idname", "") == engine), engine)
+
+
 def settings_problem(scene: bpy.types.Scene) -> str | None:
     """Return why a scene's render settings would not show nested dielectrics, or None if they would."""
     if scene.render.engine != "CYCLES":
-        return f"scene {scene.name!r} renders with {scene.render.engine}; nested dielectrics need Cycles"
+        return f"scene {scene.name!r} renders with {engine_name(scene.render.engine)}; nested dielectrics need Cycles"
     if not scene.cycles.shading_system:
         return (
             f"scene {scene.name!r} renders without Open Shading Language; "

@@ -1,4 +1,4 @@
-"""What panels draw of: texts in as many lines as they take, alerts, values to read, parameters of a medium."""
+"""What panels share: where they stand, texts in as many lines as they take, alerts, values to read, parameters of a medium."""
 
 from __future__ import annotations
 
@@ -8,6 +8,23 @@ import bpy
 
 from .materials import parameter_socket, rendered_node
 from .parameters import BY_KEYWORD
+
+
+class ObjectProperties:
+    """Where a panel of the Object properties stands."""
+
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "object"
+    bl_options = {"DEFAULT_CLOSED"}
+
+
+class Sidebar:
+    """Where a panel of the 3D view's sidebar stands."""
+
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Nested Dielectric"
 
 
 def draw_alert(layout: bpy.types.UILayout, context: bpy.types.Context, text: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from .drawing import draw_alert
+from .drawing import Sidebar, draw_alert
 from .lights import LOBE, NOTHING, RAYS, light_carriers
 from .operators import LAMP_CARRIERS, AddPasses, LampCarrier, ShadowCaustics
 
@@ -58,13 +58,10 @@ def draw_lamp(
     return row
 
 
-class LampsPanel(bpy.types.Panel):
+class LampsPanel(Sidebar, bpy.types.Panel):
     """The scene's lamps and what carries their light, in the sidebar of the 3D view."""
 
     bl_idname = "NESTED_DIELECTRIC_PT_sidebar_lamps"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Nested Dielectric"
     bl_parent_id = "NESTED_DIELECTRIC_PT_sidebar"
     bl_label = "Lamps"
     bl_options = {"DEFAULT_CLOSED"}

@@ -11,7 +11,6 @@ from typing import Any
 
 import bpy
 
-from .animation import is_animated
 from .materials import (
     dielectric_node,
     dielectrics,
@@ -171,92 +170,3 @@ def winning_order(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]
     """Return the media among ``objects``, the one that wins over all others first."""
     found = [obj for obj in objects if medium_material(obj) is not None]
     return sorted(found, key=lambda obj: (get_priority(obj), obj.name))
-
-
-def move_priority(scene: bpy.types.Scene, obj: bpy.types.Object, step: int) -> bool:
-    """Move an object one place up (-1) or down (+1) in the winning order; False if it is at the end already.
-
-    An object that shares its priority with others is parted from them; one that has its own passes the next level. The
-    object gets a free number next to that level. Where there is none, levels make room by one number each, those of a
-    material whose objects all rely on it in the material. Raises :class:`ParameterError` if that cannot be done.
-    """
-    objects = media(scene)
-    levels: dict[int, list[bpy.types.Object]] = {}
-    for medium in objects:
-        if medium != obj:
-            levels.setdefault(get_priority(medium), []).append(medium)
-    numbers = sorted(levels)
-    priority = get_priority(obj)
-    place = sum(number < priority for number in numbers)
-    if priority in levels:
-        place += step > 0
-    elif not 0 <= place + min(step, 0) < len(numbers):
-        return False
-    else:
-        place += step
-    if not obj.is_editable:
-        raise ParameterError(f"{obj.name!r} belongs to a library; make it local")
-    relying = _relying_on_materials(objects, obj)
-    ways = []
-    for number, shifts in _places_between(numbers, place, step):
-        writes = [(owner, level + by) for level, by in shifts.items() for owner in _owners(levels[level], relying)]
-        if all(owner.is_editable for owner, _ in writes):
-            ways.append((number, writes))
-    if not ways:
-        raise ParameterError(
-            f"{obj.name!r} finds no free number from 0 to {MAX_PRIORITY} there; "
-            "give media that need not differ equal priorities, or make those local that belong to a library"
-        )
-    number, writes = min(ways, key=lambda way: len(way[1]))
-    for owner, other in writes:
-        if isinstance(owner, bpy.types.Material):
-            dielectric_node(owner).inputs["Priority"].default_value = other
-        else:
-            set_priority(owner, other)
-    set_priority(obj, number)
-    return True
-
-
-def _places_between(numbers: list[int], place: int, step: int) -> list[tuple[int, dict[int, int]]]:
-    """Ways to a number before ``numbers[place]`` and behind the one before: the number, and how far levels go for it.
-
-    A free one next to the level that is passed, or that of a level which makes room with those that stand in its way.
-    """
-    before = numbers[place - 1] if place else -1
-    behind = numbers[place] if place < len(numbers) else MAX_PRIORITY + 1
-    if behind - before > 1:
-        return [(behind - 1 if step < 0 else before + 1, {})]
-    ways = []
-    for number, shift, run in ((behind, 1, numbers[place:]), (before, -1, numbers[:place][::-1])):
-        moved = {level: shift for index, level in enumerate(run) if level == number + index * shift}
-        if all(0 <= each <= MAX_PRIORITY for each in (number, *(level + shift for level in moved))):
-            ways.append((number, moved))
-    return ways
-
-
-def _relying_on_materials(objects: list[bpy.types.Object], moved: bpy.types.Object) -> set[bpy.types.Material]:
-    """Materials whose priority may change in place of that of objects: it concerns none but those of the scene that rely
-    on it, and no other dielectric of theirs.
-    """
-    here = {obj for obj in objects if obj != moved}
-    found = {medium_material(obj) for obj in here if own_priority(obj) is None}
-    for other in bpy.data.objects:
-        for _, material in dielectrics(other):
-            depends = other != moved and own_priority(other) is None
-            if depends and (other not in here or medium_material(other) != material):
-                found.discard(material)
-    return {material for material in found if material.is_editable and not _is_moved(material)}
-
-
-def _is_moved(material: bpy.types.Material) -> bool:
-    """Whether a keyframe, a driver or a link sets the material's priority."""
-    socket = dielectric_node(material).inputs["Priority"]
-    return socket.is_linked or is_animated(material.node_tree, socket)
-
-
-def _owners(level: list[bpy.types.Object], relying: set[bpy.types.Material]) -> list[bpy.types.ID]:
-    """What is to get another number for all objects of a level to have it."""
-    owners = [
-        medium_material(obj) if own_priority(obj) is None and medium_material(obj) in relying else obj for obj in level
-    ]
-    return list(dict.fromkeys(owners))

@@ -10,7 +10,7 @@ import bpy
 
 from .animation import is_animated
 from .dispersion_panels import draw_dispersion, draw_spectrum
-from .drawing import draw_parameter, draw_text
+from .drawing import Sidebar, draw_parameter, draw_text
 from .lights import carried_lamps
 from .materials import get_parameter, half_distance, parameter_socket, rendered_node
 from .operators import active_medium
@@ -86,14 +86,6 @@ class _MaterialProperties:
     bl_context = "material"
 
 
-class _Sidebar:
-    """Where a panel of the 3D view's sidebar stands."""
-
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Nested Dielectric"
-
-
 class _OfMedium:
     """Shown where there is a medium."""
 
@@ -150,4 +142,4 @@ def _panels(place: type, name: str) -> list[type[bpy.types.Panel]]:
     return found
 
 
-CLASSES = (*_panels(_Sidebar, "sidebar"), *_panels(_MaterialProperties, "material"))
+CLASSES = (*_panels(Sidebar, "sidebar"), *_panels(_MaterialProperties, "material"))

@@ -6,7 +6,6 @@ from math import isnan
 import bpy
 
 from . import lights, media
-from .analysis import clear_analysis, is_analysed
 from .caustics import set_shadow_caustics
 from .choice import Choice
 from .compatibility import UnsupportedError, blender_problem
@@ -23,7 +22,6 @@ from .materials import (
 from .media_list import listed_media
 from .parameters import BY_KEYWORD, DISPERSION_MODELS, ParameterError, check_keywords
 from .passes import add_passes
-from .preparation import prepare
 from .spectra import DISTRIBUTIONS, GAMUTS, SpectrumError, illuminant_names
 from .versions import outdated_materials, update_materials
 
@@ -99,59 +97,6 @@ def _supported(cls: type[bpy.types.Operator]) -> bool:
     if problem:
         cls.poll_message_set(problem)
     return not problem
-
-
-class _MediumOperator(bpy.types.Operator):
-    """What operators on one medium of the scene share."""
-
-    bl_options = {"REGISTER", "UNDO"}
-
-    name: bpy.props.StringProperty(
-        name="Object", description="A medium of the scene; the active object if empty", options={"SKIP_SAVE"}
-    )
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        name = self.name or getattr(context.object, "name", "")
-        obj = next((medium for medium in media.media(context.scene) if medium.name == name), None)
-        if obj is None:
-            scene = context.scene.name
-            self.report({"ERROR"}, f"{name!r} is no medium of scene {scene!r}; assign a preset to it first")
-            return {"CANCELLED"}
-        try:
-            return self.change(context, obj)
-        except ParameterError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-
-
-class PriorityMove(_MediumOperator):
-    """Move a medium up or down in the order in which media win over each other"""
-
-    bl_idname = "nested_dielectric.priority_move"
-    bl_label = "Move Medium"
-
-    direction: bpy.props.EnumProperty(
-        name="Direction",
-        items=(
-            ("UP", "Up", "Win over one more medium"),
-            ("DOWN", "Down", "Give way to one more medium"),
-        ),
-    )
-
-    def change(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
-        moved = media.move_priority(context.scene, obj, -1 if self.direction == "UP" else 1)
-        return {"FINISHED"} if moved else {"CANCELLED"}
-
-
-class PriorityOwn(_MediumOperator):
-    """Give an object a priority of its own, or return it to that of its material"""
-
-    bl_idname = "nested_dielectric.priority_own"
-    bl_label = "Own Priority"
-
-    def change(self, context: bpy.types.Context, obj: bpy.types.Object) -> set[str]:
-        media.set_priority(obj, media.get_priority(obj) if media.own_priority(obj) is None else None)
-        return {"FINISHED"}
 
 
 class _MaterialOperator(bpy.types.Operator):
@@ -317,32 +262,6 @@ class Spectrum(_MaterialOperator):
         )
 
 
-class Prepare(bpy.types.Operator):
-    """Set what this scene needs to render nested dielectrics, and look for problems with its media"""
-
-    bl_idname = "nested_dielectric.prepare"
-    bl_label = "Prepare Scene"
-    bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return _supported(cls)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            preparation = prepare(context.scene)
-        except UnsupportedError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        for change in preparation.changes or ("Nothing to change",):
-            self.report({"INFO"}, change)
-        for line in str(preparation.found).splitlines():
-            self.report({"INFO"}, line)
-        for problem in preparation.problems:
-            self.report({"WARNING"}, str(problem))
-        return {"FINISHED"}
-
-
 class UpdateMaterials(bpy.types.Operator):
     """Bring materials that another version of the extension made, and copies that an append made, to this version. Values,
     links, drivers and keyframes stay
@@ -424,7 +343,7 @@ class _SceneOperator(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not any(vars(listed_media(context.scene)).values()):
+        if not listed_media(context.scene).rows:
             cls.poll_message_set("The scene has no medium; assign a preset first")
             return False
         return _supported(cls)
@@ -466,35 +385,12 @@ class AddPasses(_SceneOperator):
         return add_passes(scene)
 
 
-class ClearAnalysis(bpy.types.Operator):
-    """Let all media ask the scene what surrounds them while it renders, until it is prepared again"""
-
-    bl_idname = "nested_dielectric.clear_analysis"
-    bl_label = "Clear Analysis"
-    bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not is_analysed(context.scene):
-            cls.poll_message_set("The scene has no analysis; Prepare Scene makes one")
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        clear_analysis(context.scene)
-        return {"FINISHED"}
-
-
 CLASSES = (
-    PriorityMove,
-    PriorityOwn,
     DispersionModel,
     SellmeierIor,
     Spectrum,
-    Prepare,
     UpdateMaterials,
     LampCarrier,
     ShadowCaustics,
     AddPasses,
-    ClearAnalysis,
 )

@@ -18,10 +18,11 @@ import bpy
 import numpy as np
 
 from . import contacts
-from .analysis import is_offset, listed, looked_at
+from .analysis import is_analysed, is_offset, listed, looked_at
 from .checks import Problem
 from .contacts import Body, Contact
 from .live import analyse
+from .media import all_objects
 from .meshes import same_places
 from .node_group import ATTRIBUTE_SOCKET, OFFSET_ATTRIBUTE, OFFSET_GROUP, is_offset_group
 
@@ -104,6 +105,33 @@ def part_coincident(scene: bpy.types.Scene) -> tuple[list[str], list[Problem]]:
         for obj, distance in distances.items()
     ]
     return changes, problems
+
+
+def join_parted(scene: bpy.types.Scene) -> list[str]:
+    """Take back what :func:`part_coincident` has moved in a scene, but where another analysed scene shows it; return what was
+    changed, in sentences.
+    """
+    shown = {obj for other in bpy.data.scenes if other != scene and is_analysed(other) for obj in all_objects(other)}
+    found = [
+        (obj, modifier)
+        for obj in sorted(all_objects(scene) - shown, key=lambda obj: obj.name)
+        if obj.is_editable
+        for modifier in filter(is_offset, obj.modifiers)
+    ]
+    groups = {modifier.node_group for _, modifier in found}
+    moved = {(obj.data, _attribute_name(modifier)) for obj, modifier in found if obj.mode == "OBJECT"}
+    for obj, modifier in found:
+        obj.modifiers.remove(modifier)
+    moved -= {
+        (obj.data, _attribute_name(modifier)) for obj in bpy.data.objects for modifier in filter(is_offset, obj.modifiers)
+    }
+    for mesh, name in moved:
+        if mesh.is_editable and name in mesh.attributes:
+            mesh.attributes.remove(mesh.attributes[name])
+    for group in groups:
+        if not group.users and group.library is None:
+            bpy.data.node_groups.remove(group)
+    return [f"{obj.name}: faces are where they were" for obj, _ in found]
 
 
 def _between_objects(

@@ -21,7 +21,7 @@ MATERIALS = (
 
 DEPTHS = (
     (FIT, "Fit to Object", "The preset's colour shows in a body as thick as the object"),
-    (MEASURED, "As Measured", "The preset's colour shows at the thickness at which it was measured, in the scene's units"),
+    (MEASURED, "As Measured", "The preset's colour shows at the thickness it was measured at, in the scene's units"),
 )
 """How thick a body is that shows a preset's colour."""
 

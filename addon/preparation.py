@@ -1,51 +1,58 @@
-"""Making a scene ready to render nested dielectrics."""
+"""Making a scene ready to render nested dielectrics, and taking that back."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Any
 
 import bpy
 
-from .analysis import Found, last_found
+from . import settings
+from .analysis import Found, clear_analysis, is_analysed, last_found
 from .checks import Problem, find_problems
 from .compatibility import achromatic_reason, require_blender
 from .lights import update_lights
 from .live import analyse
 from .materials import refresh_spectrum
-from .media import dispersing_materials, media
+from .media import all_objects, dispersing_materials, media
 from .parameters import ParameterError
-from .parting import part_coincident
-from .trees import complete_nodes, mend_nodes
+from .parting import join_parted, part_coincident
+from .report import Report, forget_report, keep_report, last_report
+from .settings import MOTION_BLUR, RANDOM_TIME, ROLLING_SHUTTER, SHUTTER, SHUTTER_CURVE, Changed
+from .trees import complete_nodes, dielectric_places, mend_nodes
 from .versions import mend_materials, version_problems
 
-AT_LEAST = {
-    "max_bounces": 64,
-    "transmission_bounces": 64,
-    "glossy_bounces": 64,
-    "transparent_max_bounces": 256,
-}
-"""Limits a path through nested media needs: an invalid surface costs a transparent bounce, an interface a transmission
-or glossy one. In a white world the glass of iced water loses 4.7 % of its light at Blender's 12 bounces, 0.3 % at 64
-and 0.08 % at 256.
-"""
+NO_MEDIA = "No media: assign a preset first"
 
 
 @dataclass(frozen=True)
 class Preparation:
-    """What :func:`prepare` changed, in sentences, the problems it found and left, and what the media of the scene now know
-    of each other.
+    """What :func:`prepare` changed, in sentences, the problems it found and left, what the media of the scene now know of
+    each other, and how many media there are.
     """
 
     changes: tuple[str, ...]
     problems: tuple[Problem, ...]
     found: Found = Found()
+    media: int = 0
+
+    @property
+    def headline(self) -> str:
+        """In one line whether the scene is ready."""
+        return headline(self.media, len(self.problems))
 
     def __str__(self) -> str:
-        lines = [f"changed: {change}" for change in self.changes] or ["nothing to change"]
+        lines = [self.headline]
+        lines += [f"changed: {change}" for change in self.changes] or ["nothing to change"]
         lines += [f"analysis: {line}" for line in str(self.found).splitlines()]
         return "\n".join(lines + [f"warning: {problem}" for problem in self.problems])
+
+
+def headline(media: int, problems: int) -> str:
+    """Return in one line whether a scene with some media and problems is ready to render."""
+    if problems:
+        return f"{problems} problem{'s' * (problems != 1)} to look at before rendering"
+    return "Ready to render" if media else NO_MEDIA
 
 
 def prepare(scene: bpy.types.Scene) -> Preparation:
@@ -53,71 +60,106 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
 
     Cycles on the CPU with Open Shading Language, and enough bounces; where a medium disperses, the motion blur that
     carries the wavelengths, with a shutter of 0 unless it is in use, and spectral tables in the file's working space;
-    where none does any more, no motion blur with a shutter of 0; the
+    where none does any more, what motion blur was before; the
     lamps that direct refraction and reflection carry; and what surrounds each medium, so that it need not ask the scene.
-    Larger limits stay. A second call changes nothing. Raises
+    Larger limits stay. A second call changes nothing. Without media nothing is changed, but what an earlier call has set
+    goes back. :func:`put_back` takes it back. Raises
     :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
     """
     require_blender()
+    report = last_report(scene)
+    changed = dict(report.settings) if report is not None else {}
+    stays = _mend() if _holds_media(scene) else []
+    if media(scene):
+        preparation = _prepare(scene, changed, stays)
+    else:
+        back = settings.go_back(scene, changed)
+        preparation = Preparation(tuple(stays + back), tuple(version_problems() + find_problems(scene)))
+    keep_report(scene, preparation.media, preparation.problems, stays, changed)
+    return preparation
+
+
+def _holds_media(scene: bpy.types.Scene) -> bool:
+    """Whether there are media, or may be once materials are mended."""
+    materials = {slot.material for obj in all_objects(scene) for slot in obj.material_slots if slot.material is not None}
+    return any(material.node_tree is not None and dielectric_places(material) for material in materials)
+
+
+def _mend() -> list[str]:
     changes = list(mend_materials())
     for material in bpy.data.materials:
         changes += mend_nodes(material) + complete_nodes(material)
-    ensure = partial(_ensure, changes)
-    ensure(scene.render, "engine", "CYCLES", "Render Engine")
-    ensure(scene.cycles, "shading_system", True, "Open Shading Language")
-    ensure(scene.cycles, "device", "CPU", "Device")
-    for attribute, least in AT_LEAST.items():
-        label = scene.cycles.bl_rna.properties[attribute].name
-        ensure(scene.cycles, attribute, max(least, getattr(scene.cycles, attribute)), label)
-    if media(scene) and update_lights(scene):
-        changes.append("Lamps of direct refraction and reflection: listed again")
+    return changes
+
+
+def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Preparation:
+    """Prepare a scene that has media.
+
+    :param changed: settings that have been changed before; stays: changes that :func:`put_back` leaves; both are brought up
+        to date.
+    """
+    set_to = [(settings.ENGINE, "CYCLES"), ("cycles.shading_system", True), ("cycles.device", "CPU")]
+    set_to += [(path, max(least, settings.read(scene, path))) for path, least in settings.AT_LEAST.items()]
+    changes = [each for path, value in set_to for each in settings.change(scene, changed, path, value)]
+    if update_lights(scene):
+        stays.append("Lamps of direct refraction and reflection: listed again")
     problems = version_problems()
     dispersing = dispersing_materials(scene)
-    if dispersing:
-        _ensure_random_time(changes, scene)
-    else:
-        _end_random_time(changes, scene)
+    changes += _ensure_random_time(scene, changed) if dispersing else _end_random_time(scene, changed)
     for material in dispersing:
         try:
             if refresh_spectrum(material):
-                changes.append(f"Spectral Table of {material.name}: baked again")
+                stays.append(f"Spectral Table of {material.name}: baked again")
         except ParameterError as error:
             problems.append(Problem(material.name, f"keeps its old spectral table, because {error}", "choose another"))
-    found = Found()
-    if media(scene):
-        found = analyse(scene)
-        parted, coincident = part_coincident(scene)
-        changes += parted
-        problems += coincident
-        if parted:
-            found = last_found(scene)
-    return Preparation(tuple(changes), tuple(problems + find_problems(scene)), found)
+    found = analyse(scene)
+    parted, coincident = part_coincident(scene)
+    if parted:
+        found = last_found(scene)
+    problems += coincident + find_problems(scene)
+    return Preparation(tuple(stays + changes + parted), tuple(problems), found, len(media(scene)))
 
 
-def _ensure(changes: list[str], owner: Any, attribute: str, value: Any, label: str) -> None:
-    before = getattr(owner, attribute)
-    if before != value:
-        setattr(owner, attribute, value)
-        changes.append(f"{label}: {before} -> {value}")
-
-
-def _ensure_random_time(changes: list[str], scene: bpy.types.Scene) -> None:
+def _ensure_random_time(scene: bpy.types.Scene, changed: Changed) -> list[str]:
     """Make Cycles draw a time for every path, evenly. Motion blur that is in use stays as it is."""
+    changes = []
     if not scene.render.use_motion_blur:
-        _ensure(changes, scene.render, "motion_blur_shutter", 0.0, "Shutter")
-        _ensure(changes, scene.render, "use_motion_blur", True, "Motion Blur")
+        changes += settings.change(scene, changed, SHUTTER, 0.0)
+        changes += settings.change(scene, changed, MOTION_BLUR, True)
     if achromatic_reason(scene):
-        _ensure(changes, scene.cycles, "rolling_shutter_type", "NONE", "Rolling Shutter")
-        mapping = scene.render.motion_blur_shutter_curve
-        for point in mapping.curves[0].points:
-            point.location[1] = 1.0
-        mapping.update()
-        changes.append("Shutter Curve: flat")
+        changes += settings.change(scene, changed, ROLLING_SHUTTER, "NONE")
+        points = len(settings.read(scene, SHUTTER_CURVE))
+        changes += settings.change(scene, changed, SHUTTER_CURVE, [1.0] * points)
+    return changes
 
 
-def _end_random_time(changes: list[str], scene: bpy.types.Scene) -> None:
-    """Switch off motion blur that blurs nothing, which only :func:`_ensure_random_time` leaves on."""
+def _end_random_time(scene: bpy.types.Scene, changed: Changed) -> list[str]:
+    """Let motion blur be what it was; switch off what blurs nothing, which only an older version's preparation leaves on."""
+    changes = settings.go_back(scene, changed, RANDOM_TIME)
     if scene.render.use_motion_blur and scene.render.motion_blur_shutter == 0.0:
-        shutter = scene.render.bl_rna.properties["motion_blur_shutter"].default
-        _ensure(changes, scene.render, "use_motion_blur", False, "Motion Blur")
-        _ensure(changes, scene.render, "motion_blur_shutter", shutter, "Shutter")
+        default = scene.render.bl_rna.properties["motion_blur_shutter"].default
+        changes += settings.change(scene, changed, MOTION_BLUR, False)
+        changes += settings.change(scene, changed, SHUTTER, default)
+    return changes
+
+
+def taken_back(scene: bpy.types.Scene, report: Report) -> list[str]:
+    """Return what :func:`put_back` would change of the settings, in sentences of what was and is; it takes no time."""
+    return settings.sentences(scene, settings.held(scene, report.settings))
+
+
+def put_back(scene: bpy.types.Scene) -> Sequence[str]:
+    """Take back what :func:`prepare` has changed in a scene, as far as it still is as it was set; return what was changed, in
+    sentences.
+
+    Render settings go back, faces that were parted lie where they lay, and media ask the scene again. What was mended in
+    materials stays.
+    """
+    report = last_report(scene)
+    changes = settings.go_back(scene, dict(report.settings)) if report is not None else []
+    changes += join_parted(scene)
+    if is_analysed(scene):
+        clear_analysis(scene)
+        changes.append("Media: ask the scene what surrounds them")
+    forget_report(scene)
+    return changes

@@ -116,7 +116,8 @@ def _catalogue() -> Catalogue:
             problems.append(f"{error}; correct the file or delete it")
             continue
         if _has(found.values(), key, preset.name):
-            problems.append(f"preset file {folder / key}.toml: {preset.name} is built in; rename the file and its preset")
+            remedy = "rename the file and its preset"
+            problems.append(f"preset file {folder / key}.toml: {preset.name} is built in; {remedy}")
         else:
             own[key] = preset
     return Catalogue(dict(sorted((found | own).items())), frozenset(own), tuple(problems))
@@ -144,7 +145,8 @@ def save_user_preset(preset: Preset) -> Path:
 def delete_user_preset(key: str) -> None:
     """Remove a preset of the user's. Raises :class:`ParameterError` if it is none, or its file cannot be removed."""
     if key not in catalogue().own:
-        raise ParameterError(f"{key!r} is no preset of yours; yours are: {', '.join(sorted(catalogue().own)) or 'none'}")
+        own = ", ".join(sorted(catalogue().own)) or "none"
+        raise ParameterError(f"{key!r} is no preset of yours; yours are: {own}")
     path = user_folder() / f"{key}.toml"
     try:
         path.unlink()

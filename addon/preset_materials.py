@@ -110,7 +110,8 @@ def preset_from(material: bpy.types.Material, name: str, group: str, tags: Itera
     kept = usable_spectrum_settings(material)
     values |= {each.keyword: kept[each.keyword] for each in SETTINGS if kept[each.keyword] != each.default}
     words = tuple(dict.fromkeys(tag.strip() for tag in tags if tag.strip()))
-    return Preset(key_of(name), name.strip(), group, words, description, f"Saved from material {material.name!r}.", values)
+    source = f"Saved from material {material.name!r}."
+    return Preset(key_of(name), name.strip(), group, words, description, source, values)
 
 
 def linked_parameters(material: bpy.types.Material) -> list[str]:
@@ -146,9 +147,9 @@ def _is_used(material: bpy.types.Material, leaving: Iterable[bpy.types.Object]) 
         if len(slots) == 1 and obj.active_material == material:
             left.add(obj if slots[0].link == "OBJECT" else obj.data)
     owners = bpy.data.user_map(subset={material})[material]
-    return material.use_fake_user or any(
-        owner.users > (owner in left) if not isinstance(owner, bpy.types.Object) else owner not in left for owner in owners
-    )
+    used = (owner.users > (owner in left) for owner in owners if not isinstance(owner, bpy.types.Object))
+    linked = (owner not in left for owner in owners if isinstance(owner, bpy.types.Object))
+    return material.use_fake_user or any(used) or any(linked)
 
 
 def _written(value: Any) -> Any:

@@ -39,8 +39,12 @@ class AssignPreset(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     bl_property = "found"
 
-    preset: bpy.props.EnumProperty(name="Preset", description="What the objects are to be", items=lambda self, context: items())
-    found: bpy.props.EnumProperty(name="Found", items=lambda self, context: searched_items(), options={"HIDDEN", "SKIP_SAVE"})
+    preset: bpy.props.EnumProperty(
+        name="Preset", description="What the objects are to be", items=lambda self, context: items()
+    )
+    found: bpy.props.EnumProperty(
+        name="Found", items=lambda self, context: searched_items(), options={"HIDDEN", "SKIP_SAVE"}
+    )
     material: bpy.props.EnumProperty(
         name="Material",
         description="What to do where the file's material of the preset was edited",
@@ -101,7 +105,8 @@ class AssignPreset(bpy.types.Operator):
                 "to have the edited one, choose Material: Use Edited",
             )
         elif edited is not None:
-            self.report({"INFO"}, f"{edited.name!r} was edited; Material: Clean Copy is as the preset {loaded.name!r} has it")
+            text = f"{edited.name!r} was edited; Material: Clean Copy is as the preset {loaded.name!r} has it"
+            self.report({"INFO"}, text)
         return {"FINISHED"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -119,7 +124,7 @@ class AssignPreset(bpy.types.Operator):
 
 
 class FitDepth(bpy.types.Operator):
-    """Set how thick a body is that shows the medium's Transmittance as it is: thinner ones are paler, thicker ones darker"""
+    """Set how thick a body is that shows the medium's colour as it is: thinner ones are paler, thicker ones darker"""
 
     bl_idname = "nested_dielectric.fit_depth"
     bl_label = "Fit Depth"
@@ -237,14 +242,15 @@ class SavePreset(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         material = active_medium(context)
         before = catalogue().own
+        name, tags = self.name or material.name, self.tags.split(",")
         try:
-            preset = preset_from(material, self.name or material.name, self.group, self.tags.split(","), self.text.strip())
+            preset = preset_from(material, name, self.group, tags, self.text.strip())
             path = save_user_preset(preset)
         except (ParameterError, WriteError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        for name in linked_parameters(material):
-            self.report({"WARNING"}, f"{material.name!r}: other nodes make {name}, which no preset can hold")
+        for linked in linked_parameters(material):
+            self.report({"WARNING"}, f"{material.name!r}: other nodes make {linked}, which no preset can hold")
         self.report({"INFO"}, f"Preset {preset.name} {'replaced' if preset.key in before else 'saved'}: {path}")
         return {"FINISHED"}
 
@@ -254,7 +260,9 @@ class _OwnPreset(bpy.types.Operator):
 
     bl_options = {"REGISTER"}
 
-    preset: bpy.props.EnumProperty(name="Preset", description="A preset of your own", items=lambda self, context: own_items())
+    preset: bpy.props.EnumProperty(
+        name="Preset", description="A preset of your own", items=lambda self, context: own_items()
+    )
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -11,16 +11,21 @@ from . import (
     add_menu,
     asset_library,
     dispersion_panels,
+    icons,
     lamp_panel,
     live,
     media_list,
+    media_rows,
     medium_panels,
+    notices,
     operators,
-    panels,
     preferences,
+    preparation_operators,
     preset_menus,
     preset_operators,
     preset_pictures,
+    priority_operators,
+    scene_panels,
     versions,
 )
 from .checks import material_problems
@@ -34,13 +39,17 @@ _CHANGES = tuple(
 
 CLASSES = (
     *preferences.CLASSES,
+    media_rows.Place,
     *operators.CLASSES,
     *preset_operators.CLASSES,
     *preset_menus.CLASSES,
     *add_menu.CLASSES,
-    *panels.CLASSES,
+    *priority_operators.CLASSES,
+    *preparation_operators.CLASSES,
+    *scene_panels.CLASSES,
     *medium_panels.CLASSES,
     *lamp_panel.CLASSES,
+    *scene_panels.LAST_CLASSES,
 )
 
 _registered: ExitStack | None = None
@@ -60,14 +69,24 @@ def register() -> None:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
 
+        icons.open_icons()
+        undo.callback(icons.close_icons)
         for pictures in (dispersion_panels, preset_pictures):
             pictures.open_pictures()
             undo.callback(pictures.close_pictures)
 
         bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
-            name="Active Medium", get=panels.get_active, set=panels.set_active, options=set()
+            name="Active Medium", get=media_rows.get_active, set=media_rows.set_active, options=set()
         )
         undo.callback(delattr, bpy.types.Scene, "nested_dielectric_active")
+        bpy.types.WindowManager.nested_dielectric_places = bpy.props.CollectionProperty(type=media_rows.Place)
+        undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_places")
+        undo.callback(media_rows.forget_wanted)
+
+        for name, draw in notices.PLACES:
+            place = getattr(bpy.types, name)
+            place.append(draw)
+            undo.callback(place.remove, draw)
 
         bpy.types.WindowManager.nested_dielectric_presets = bpy.props.PointerProperty(
             type=preset_menus.PresetChoice, options={"SKIP_SAVE"}

@@ -29,6 +29,7 @@ NAMESPACE = UUID("6d2f0c0e-6f3a-5f2b-9a35-6b1d5d6a1c77")
 """Catalogues keep their numbers by it from one version to the next."""
 
 LICENCE = "CC0-1.0"
+LICENCE_PAGE = "https://creativecommons.org/publicdomain/zero/1.0/"
 AUTHOR = "Nested Dielectric developers"
 COPYRIGHT = "None: public domain (CC0-1.0)"
 
@@ -76,7 +77,7 @@ def build(folder: Path) -> Path:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     materials = {add_asset(load_preset(key)) for key in preset_names()}
     text = bpy.data.texts.new("Licence")
-    text.write(f"These materials are in the public domain: {LICENCE}, https://creativecommons.org/publicdomain/zero/1.0/\n")
+    text.write(f"These materials are in the public domain: {LICENCE}, {LICENCE_PAGE}\n")
     path = folder / FILE_NAME
     with replacing(path) as draft:
         bpy.data.libraries.write(str(draft), materials | {text}, fake_user=True, compress=True)
@@ -87,7 +88,7 @@ def build(folder: Path) -> Path:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("folder", type=Path, nargs="?", default=Path("library"), help="where it goes (default: library)")
+    parser.add_argument("folder", type=Path, nargs="?", default=Path("library"), help="where to (default: library)")
     path = build(parser.parse_args().folder)
     print(f"wrote {len(preset_names())} media, {os.path.getsize(path) / 1e6:.1f} MB: {path}")
     return 0

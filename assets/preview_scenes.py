@@ -99,7 +99,8 @@ def _ball(scene: bpy.types.Scene, key: str) -> None:
 def _air(scene: bpy.types.Scene, key: str) -> None:
     """Bubbles in a ball of glass."""
     assign(_add(scene, "Ball", iced_water.spheres([(Vector((0.0, 0.0, 0.52)), 0.52)])), GLASS)
-    bubbles = [((0.0, 0.0, 0.55), 0.24), ((0.27, -0.1, 0.3), 0.1), ((-0.25, -0.1, 0.35), 0.07), ((0.2, 0.0, 0.83), 0.06)]
+    bubbles = [((0.0, 0.0, 0.55), 0.24), ((0.27, -0.1, 0.3), 0.1), ((-0.25, -0.1, 0.35), 0.07)]
+    bubbles.append(((0.2, 0.0, 0.83), 0.06))
     assign(_add(scene, "Bubbles", iced_water.spheres((Vector(place), radius) for place, radius in bubbles)), key)
 
 
@@ -163,10 +164,10 @@ def _ice(scene: bpy.types.Scene, key: str) -> None:
         cube.matrix_world = Matrix.LocRotScale(Vector(place), Euler(turn), Vector((size,) * 3))
         assign(cube, key)
     random = Random(3)
-    bubbles = [
-        (Vector((random.gauss(-0.1, 0.09), random.gauss(0.06, 0.09), random.gauss(0.36, 0.1))), 0.008 + 0.03 * random.random() ** 2)
-        for _ in range(22)
-    ]
+    bubbles = []
+    for _ in range(22):
+        place = Vector((random.gauss(-0.1, 0.09), random.gauss(0.06, 0.09), random.gauss(0.36, 0.1)))
+        bubbles.append((place, 0.008 + 0.03 * random.random() ** 2))
     assign(_add(scene, "Bubbles", iced_water.spheres(bubbles)), AIR)
 
 

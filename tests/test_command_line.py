@@ -43,7 +43,7 @@ def test_render_prepares_in_memory_shows_progress_and_leaves_the_file(file, tmp_
     before = file.read_bytes()
     done = run("render", file, "-o", tmp_path / "new" / "picture.png", "--samples", 20, "--frame", 3)
     assert done.returncode == 0, done.stderr
-    assert "Render Engine: BLENDER_EEVEE -> CYCLES" in done.stdout
+    assert "Render Engine: EEVEE -> Cycles" in done.stdout
     assert done.stdout.strip().endswith(str(tmp_path / "new" / "picture.png"))
     assert "of 20 samples" in done.stderr
     picture = read_picture(tmp_path / "new" / "picture.png")

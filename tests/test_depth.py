@@ -26,8 +26,12 @@ def wine(monkeypatch):
     """An empty scene in metres, and a preset with a colour that no file changes."""
     new_scene()
     known = preset_materials.load_preset
+
+    def load(key):
+        return WINE if key == "wine" else known(key)
+
     for module in ("materials", "preset_materials"):
-        monkeypatch.setattr(f"nested_dielectric.{module}.load_preset", lambda key: WINE if key == "wine" else known(key))
+        monkeypatch.setattr(f"nested_dielectric.{module}.load_preset", load)
 
 
 def depth(material) -> float:

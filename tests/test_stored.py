@@ -305,7 +305,7 @@ def test_only_what_animates_the_dispersion_switches_motion_blur_on():
     assert scene.render.use_motion_blur and scene.render.motion_blur_shutter == 0.0
     inputs["Disperse"].keyframe_delete("default_value")
     changes = nd.prepare(scene).changes
-    assert "Motion Blur: True -> False" in changes and not scene.render.use_motion_blur
+    assert "Motion Blur: on -> off" in changes and not scene.render.use_motion_blur
     assert scene.render.motion_blur_shutter == 0.5 and nd.prepare(scene).changes == ()
     inputs["Disperse"].driver_add("default_value").driver.expression = "1"
     nd.prepare(scene)
@@ -318,60 +318,3 @@ def test_motion_blur_that_blurs_stays_on_where_nothing_disperses():
     scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 0.25
     nd.prepare(scene)
     assert scene.render.use_motion_blur and scene.render.motion_blur_shutter == 0.25
-
-
-def crowd(count: int = 400) -> list[bpy.types.Object]:
-    """Droplets that rely on one material of priority 1, in a medium of priority 0 and under one of priority 2."""
-    new_scene()
-    mesh = add_box("Mould", (0, 0, 0), (1, 1, 1), nd.new_material("Drop", priority=1)).data
-    for index in range(count - 1):
-        bpy.context.scene.collection.objects.link(bpy.data.objects.new(f"Drop {index}", mesh))
-    add_box("Pane", (0, 0, 0), (1, 1, 1), nd.new_material("Pane", priority=0))
-    add_box("Sea", (0, 0, 0), (1, 1, 1), nd.new_material("Sea", priority=2))
-    return [obj for obj in bpy.context.scene.objects if obj.data == mesh]
-
-
-def own_priorities() -> dict[str, int]:
-    return {obj.name: obj["nd_priority"] for obj in bpy.context.scene.objects if "nd_priority" in obj}
-
-
-@pytest.mark.parametrize(
-    "name, step, own, order",
-    [
-        ("Drop 7", -1, {"Drop 7": 1}, ("Pane", "Drop 7", "Drop 5", "Sea")),
-        ("Drop 7", 1, {"Drop 7": 2}, ("Pane", "Drop 5", "Drop 7", "Sea")),
-        ("Pane", 1, {"Pane": 2}, ("Drop 5", "Pane", "Sea")),
-        ("Sea", -1, {"Sea": 1}, ("Pane", "Sea", "Drop 5")),
-    ],
-)
-def test_moving_one_medium_gives_no_other_a_priority_of_its_own(name, step, own, order):
-    crowd()
-    scene = bpy.context.scene
-    assert media.move_priority(scene, bpy.data.objects[name], step)
-    assert own_priorities() == own
-    numbers = [nd.get_priority(bpy.data.objects[each]) for each in order]
-    assert numbers == sorted(set(numbers))
-    assert len({nd.get_priority(obj) for obj in scene.objects if obj.name.startswith("Drop") and obj.name != name}) == 1
-
-
-def test_a_material_that_other_scenes_share_keeps_its_priority():
-    drops = crowd(5)
-    other = bpy.data.scenes.new("Other")
-    other.collection.objects.link(bpy.data.objects.new("Elsewhere", drops[0].data))
-    assert media.move_priority(bpy.context.scene, drops[1], -1)
-    assert nd.get_priority(bpy.data.objects["Elsewhere"]) == 1
-
-
-def test_a_list_without_a_free_number_says_so():
-    new_scene()
-    glass = nd.new_material("Glass", priority=0)
-    last = add_box("Last", (0, 0, 0), (1, 1, 1), glass, 1000)
-    for number in range(1000):
-        obj = bpy.data.objects.new("Medium", last.data)
-        bpy.context.scene.collection.objects.link(obj)
-        obj["nd_priority"] = number
-    twin = bpy.data.objects.new("Twin", last.data)
-    bpy.context.scene.collection.objects.link(twin)
-    twin["nd_priority"] = 500
-    with pytest.raises(nd.ParameterError, match="'Twin' finds no free number"):
-        media.move_priority(bpy.context.scene, twin, -1)

@@ -1,7 +1,5 @@
 """Operators, panels and registration, as Blender's buttons call them."""
 
-from types import SimpleNamespace
-
 import bpy
 import pytest
 
@@ -13,10 +11,11 @@ from nested_dielectric import (
     media,
     node_group,
     operators,
-    panels,
+    preparation_operators,
     preset_menus,
     preset_operators,
     registration,
+    scene_panels,
 )
 from nested_dielectric.passes import compositors
 from ui import add_cube, add_dispersive, add_media, labels_and_operators, texts
@@ -44,7 +43,7 @@ def in_blender():
 def test_registering_twice_changes_nothing():
     once = in_blender()
     nd.register()
-    assert in_blender() == once == (len(registration.CLASSES), 1, 1, [True, True], 2)
+    assert in_blender() == once == (len(registration.CLASSES), 1, 1, [True, True], 3)
 
 
 def test_unregistering_leaves_no_classes_behind():
@@ -53,7 +52,7 @@ def test_unregistering_leaves_no_classes_behind():
     assert not [name for name in dir(bpy.types) if name.upper().startswith("NESTED_DIELECTRIC")]
     nd.unregister()
     nd.register()
-    assert in_blender() == (len(registration.CLASSES), 1, 1, [True, True], 2)
+    assert in_blender() == (len(registration.CLASSES), 1, 1, [True, True], 3)
 
 
 def test_a_registration_that_fails_raises_and_leaves_nothing_behind(monkeypatch):
@@ -99,7 +98,7 @@ def test_presets_are_greyed_out_where_nothing_can_be_a_medium():
 
 def test_operators_are_greyed_out_in_a_blender_that_cannot_render_media(monkeypatch):
     add_cube("A")
-    for module in (operators, preset_operators):
+    for module in (operators, preparation_operators, preset_operators):
         monkeypatch.setattr(module, "blender_problem", lambda: "this Blender cannot")
     assert not bpy.ops.nested_dielectric.assign_preset.poll()
     assert not bpy.ops.nested_dielectric.prepare.poll()
@@ -119,86 +118,11 @@ def test_undo_takes_a_preset_and_a_priority_back():
     assert priorities() == {"A": 30}
 
 
-def test_a_medium_moves_up_and_down_the_winning_order():
-    add_media(A=1, B=2, C=3)
-    bpy.ops.nested_dielectric.priority_move(name="C", direction="UP")
-    assert priorities() == {"A": 1, "C": 2, "B": 3}
-    bpy.ops.nested_dielectric.priority_move(name="A", direction="DOWN")
-    assert priorities() == {"C": 2, "A": 3, "B": 4}
-
-
-def test_the_first_medium_cannot_move_further_up():
-    add_media(A=1, B=2)
-    assert bpy.ops.nested_dielectric.priority_move(name="A", direction="UP") == {"CANCELLED"}
-
-
-def test_without_a_name_the_active_object_moves():
-    add_media(A=1, B=2)
-    bpy.ops.nested_dielectric.priority_move(direction="UP")
-    assert priorities() == {"B": 0, "A": 1}
-
-
-def test_an_own_priority_starts_at_the_one_in_force_and_returns_to_that_of_the_material():
-    (water,) = add_media(A=None)
-    bpy.ops.nested_dielectric.priority_own(name="A")
-    assert media.own_priority(water) == 30
-    nd.set_priority(water, 7)
-    bpy.ops.nested_dielectric.priority_own(name="A")
-    assert media.own_priority(water) is None
-    assert nd.get_priority(water) == 30
-
-
 def test_an_object_that_is_no_medium_is_named_in_the_error():
+    add_media(A=1)
     add_cube("Wall")
     with pytest.raises(RuntimeError, match="'Wall' is no medium of scene 'Scene'"):
         bpy.ops.nested_dielectric.priority_own()
-
-
-def test_prepare_scene_reports_changes_and_problems(capfd):
-    bpy.ops.mesh.primitive_plane_add()
-    nd.assign(bpy.context.object, "water")
-    bpy.ops.nested_dielectric.prepare()
-    assert panels.settings_problem(bpy.context.scene) is None
-    output = "".join(capfd.readouterr())
-    assert "Info: Render Engine: BLENDER_EEVEE -> CYCLES" in output
-    assert "Warning: 'Plane' is not closed" in output
-
-
-def test_the_list_shows_the_media_of_a_scene_in_winning_order():
-    add_media(A=3, B=1, C=None, D=2)
-    add_cube("Wall")
-    scene = bpy.context.scene
-
-    def rows(text=""):
-        instance = SimpleNamespace(filter_name=text, bitflag_filter_item=1 << 30)
-        flags, places = panels.MediaList.filter_items(instance, bpy.context, scene, "objects")
-        shown = [(place, obj.name) for obj, flag, place in zip(scene.objects, flags, places) if flag]
-        return [name for _, name in sorted(shown)]
-
-    assert rows() == ["B", "D", "A", "C"]
-    assert rows("D") == ["D"]
-
-
-def test_choosing_a_row_selects_its_object_and_the_list_follows_the_selection():
-    first, second = add_media(A=1, B=2)
-    scene = bpy.context.scene
-    assert scene.objects[scene.nested_dielectric_active] == second
-    scene.nested_dielectric_active = scene.objects.find("A")
-    assert bpy.context.view_layer.objects.active == first
-    assert bpy.context.selected_objects == [first]
-    assert scene.objects[scene.nested_dielectric_active] == first
-
-
-def test_choosing_a_row_outside_the_view_layer_changes_nothing():
-    first, second = add_media(A=1, B=2)
-    scene = bpy.context.scene
-    hidden = bpy.data.collections.new("Excluded")
-    scene.collection.children.link(hidden)
-    scene.collection.objects.unlink(first)
-    hidden.objects.link(first)
-    bpy.context.view_layer.layer_collection.children["Excluded"].exclude = True
-    scene.nested_dielectric_active = scene.objects.find("A")
-    assert bpy.context.view_layer.objects.active == second
 
 
 def test_a_render_that_would_not_show_media_says_why(capsys):
@@ -225,23 +149,23 @@ def test_panels_draw_in_any_width(draw, panel, width):
 def test_the_panels_offer_to_update_materials_of_another_version(draw):
     add_media(A=1)
     update = operators.UpdateMaterials.bl_idname
-    for panel in (panels.SidebarPanel, panels.ObjectPanel):
+    for panel in (scene_panels.SidebarPanel, scene_panels.ObjectPanel):
         assert update not in labels_and_operators(draw(panel))[1]
     node = materials.dielectric_node(bpy.data.objects["A"].active_material)
     node.node_tree = node.node_tree.copy()
     node.node_tree[node_group.VERSION_PROPERTY] = 1
-    for panel in (panels.SidebarPanel, panels.ObjectPanel):
+    for panel in (scene_panels.SidebarPanel, scene_panels.ObjectPanel):
         labels, buttons = labels_and_operators(draw(panel))
         assert "From another version, or a copy: Water" in labels and update in buttons
     bpy.ops.nested_dielectric.update_materials()
     assert node_group.group_version(node.node_tree) == node_group.MATERIAL_VERSION
-    assert update not in labels_and_operators(draw(panels.SidebarPanel))[1]
+    assert update not in labels_and_operators(draw(scene_panels.SidebarPanel))[1]
 
 
 def test_the_panels_name_a_material_of_a_newer_version(draw):
     add_media(A=1)
     node_group.find_group()[node_group.VERSION_PROPERTY] = node_group.MATERIAL_VERSION + 1
-    labels, buttons = labels_and_operators(draw(panels.SidebarPanel))
+    labels, buttons = labels_and_operators(draw(scene_panels.SidebarPanel))
     assert "'Water' was made by a newer version" in labels and operators.UpdateMaterials.bl_idname not in buttons
 
 

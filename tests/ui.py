@@ -39,6 +39,11 @@ class Layout:
     def __setattr__(self, name, value):
         setattr(self.layout, name, value)
 
+    def panel(self, idname, default_closed=False):
+        """A panel within it, which is open; Blender makes them in panels alone."""
+        self.drawn.append(("panel", (idname,), {"default_closed": default_closed}))
+        return Layout(self.layout.row(), self.drawn), Layout(self.layout.column(), self.drawn)
+
     def __getattr__(self, name):
         def call(*arguments, **keywords):
             self.drawn.append((name, arguments, keywords | {"active": self.layout.active}))
@@ -73,7 +78,7 @@ def draw_panel(panel, width, read_output):
 def texts(drawn):
     """All labels of a panel as one text, its properties' names, and its buttons' names with what they look like."""
     by_kind = {
-        kind: {keywords["text"]: keywords for name, _, keywords in drawn if name == kind}
+        kind: {keywords["text"]: keywords for name, _, keywords in drawn if name == kind and "text" in keywords}
         for kind in ("prop", "operator")
     }
     labels = " ".join(keywords["text"] for name, _, keywords in drawn if name == "label")
