@@ -8,6 +8,7 @@ import pytest
 
 import nested_dielectric as nd
 from nested_dielectric import (
+    cli,
     materials,
     preferences,
     preset_library,
@@ -297,6 +298,16 @@ def test_a_wrong_file_of_the_users_is_named_with_the_remedy_and_the_menu_goes_on
         preset_library.load_preset("bad")
     labels = " ".join(keywords.get("text", "") for name, _, keywords in draw("Drinks") if name == "label")
     assert "bad.toml" in labels.replace(" ", "")
+
+
+def test_the_command_line_lists_the_users_presets_and_names_wrong_files(folder, capsys):
+    save_wine(folder)
+    (folder / "bad.toml").write_text("nonsense")
+    assert cli.main(["presets"]) == 0
+    printed = capsys.readouterr()
+    (line,) = [line for line in printed.out.splitlines() if line.startswith("my_wine ")]
+    assert line.endswith("Red. (yours)")
+    assert "bad.toml" in printed.err and "correct the file" in printed.err
 
 
 def test_presets_that_come_and_go_are_seen_at_once(folder):
