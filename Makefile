@@ -12,7 +12,7 @@ BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli 
 # Small renders mostly wait for one thread that compiles shaders, so two files at a time take half as long.
 PYTEST_OPTIONS := -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: demo presets assets test test-quick test-lts bench bench-quick extension clean
+.PHONY: demo presets assets docs test test-quick test-lts bench bench-quick extension clean
 
 demo: $(STAMP)
 	$(PYTHON) -m nested_dielectric demo
@@ -31,6 +31,10 @@ test-lts: $(STAMP) $(LTS_STAMP)
 # The files of presets, from the tables and formulae in presets/build.
 presets: $(STAMP)
 	$(PYTHON) -m presets.build
+
+# The manual's generated pages, and those of its pictures whose scripts have changed.
+docs: $(STAMP)
+	$(PYTHON) docs/build
 
 bench: $(STAMP)
 	$(PYTHON) benchmarks/bench.py

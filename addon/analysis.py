@@ -80,6 +80,22 @@ SETTLED_MODIFIERS = frozenset(
 )
 """Modifiers whose result depends on the mesh and on numbers alone, the same in the viewport and in a render."""
 
+SHADING_NODES = frozenset(
+    (
+        "FunctionNodeBooleanMath",
+        "FunctionNodeCompare",
+        "GeometryNodeInputEdgeSmooth",
+        "GeometryNodeInputMeshEdgeAngle",
+        "GeometryNodeInputShadeSmooth",
+        "GeometryNodeSetShadeSmooth",
+        "NodeGroupInput",
+        "NodeGroupOutput",
+        "NodeReroute",
+        "ShaderNodeMath",
+    )
+)
+"""Geometry Nodes that leave all points and faces where they are: those of *Smooth by Angle*, which *Shade Auto Smooth* adds."""
+
 ABSORPTION_VALUES = ("Transmittance", "Transmittance Depth")
 NOTHING_ABSORBED = (0.0, 0.0, 0.0)
 
@@ -804,7 +820,7 @@ def _is_animated(data: bpy.types.ID | None) -> bool:
 
 def _is_settled(modifier: bpy.types.Modifier) -> bool:
     """Whether it depends on the mesh and on numbers alone."""
-    if is_offset(modifier):
+    if keeps_mesh(modifier):
         return True
     return modifier.type in SETTLED_MODIFIERS and not any(
         prop.type == "POINTER" and isinstance(getattr(modifier, prop.identifier), bpy.types.ID)
@@ -812,8 +828,16 @@ def _is_settled(modifier: bpy.types.Modifier) -> bool:
     )
 
 
+def keeps_mesh(modifier: bpy.types.Modifier) -> bool:
+    """Whether it leaves all faces and their materials: it shades them, or parts those in the same place."""
+    tree = modifier.node_group if modifier.type == "NODES" else None
+    if tree is None or is_offset(modifier):
+        return tree is not None
+    return tree.animation_data is None and all(node.bl_idname in SHADING_NODES for node in tree.nodes)
+
+
 def is_offset(modifier: bpy.types.Modifier) -> bool:
-    """Whether it is the modifier that parts faces in the same place, which keeps all faces."""
+    """Whether it is the modifier that parts faces in the same place."""
     return modifier.type == "NODES" and is_offset_group(modifier.node_group)
 
 
@@ -1085,7 +1109,7 @@ def _most_slots() -> dict[bpy.types.Material, int]:
     most: dict[bpy.types.Material, int] = {}
     for obj in bpy.data.objects:
         count = len(obj.material_slots)
-        if any(modifier.type in ("NODES", "BOOLEAN") and not is_offset(modifier) for modifier in obj.modifiers):
+        if any(modifier.type in ("NODES", "BOOLEAN") and not keeps_mesh(modifier) for modifier in obj.modifiers):
             count = MATERIAL_SLOTS
         for slot in obj.material_slots:
             most[slot.material] = max(most.get(slot.material, 0), count)

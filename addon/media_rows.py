@@ -15,8 +15,8 @@ _chosen: dict[int, tuple[int, int]] = {}
 """By the session's number of a scene, those of the material that was chosen and of the object that was active then."""
 
 
-class Place(bpy.types.PropertyGroup):
-    """A place for a row."""
+class NestedDielectricPlace(bpy.types.PropertyGroup):
+    """A place for a row; registered by its name, which other extensions must not have."""
 
 
 def active_line(scene: bpy.types.Scene) -> Line | None:

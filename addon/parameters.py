@@ -908,19 +908,3 @@ def _range(parameter: Parameter) -> str:
     if low is None and high is None:
         return ""
     return f"{low:g} to {high:g}"
-
-
-def _cell(parameter: Parameter) -> tuple[str, ...]:
-    default = parameter.default
-    if parameter.kind in ("COLOR", "VECTOR"):
-        default = ", ".join(f"{component:g}" for component in default)
-    elif parameter.kind == "SHADER":
-        default = "none"
-    values = _range(parameter) or ", ".join(f"`{choice.keyword}`" for choice in parameter.choices)
-    return f"**{parameter.name}**", f"`{parameter.keyword}`", str(default), values, parameter.description
-
-
-def manual_table() -> str:
-    """The manual's table of parameters, in Markdown."""
-    rows = [("Socket", "Keyword", "Default", "Values", "Meaning"), ("---",) * 5, *map(_cell, PARAMETERS)]
-    return "\n".join(f"| {' | '.join(row)} |" for row in rows)

@@ -18,7 +18,7 @@ import bpy
 import numpy as np
 
 from . import contacts
-from .analysis import is_analysed, is_offset, listed, looked_at
+from .analysis import is_analysed, is_offset, keeps_mesh, listed, looked_at
 from .checks import Problem
 from .contacts import Body, Contact
 from .live import analyse
@@ -270,7 +270,7 @@ def _hindrance(obj: bpy.types.Object, move: Move) -> str:
         first.append("apply its shape keys")
     if obj.mode != "OBJECT":
         first.append("leave its mode for Object Mode")
-    if not all(map(is_offset, obj.modifiers)):
+    if not all(map(keeps_mesh, obj.modifiers)):
         first.append(
             "apply its modifiers" if obj.data.users == 1 else "make its mesh single-user and apply its modifiers"
         )

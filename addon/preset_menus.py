@@ -160,7 +160,7 @@ def _group_menu(index: int, group: str) -> type[bpy.types.Menu]:
 GROUP_MENUS = tuple(_group_menu(index, group) for index, group in enumerate((*GROUPS, USER_GROUP)))
 
 
-class PresetChoice(bpy.types.PropertyGroup):
+class NestedDielectricPresetChoice(bpy.types.PropertyGroup):
     """What the popover shows."""
 
     group: bpy.props.EnumProperty(name="Group", description="Group of presets to show", items=_GROUP_ITEMS)
@@ -171,4 +171,4 @@ class PresetChoice(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (PresetChoice, PresetPopover, *GROUP_MENUS, PresetMenu, ObjectMenu)
+CLASSES = (NestedDielectricPresetChoice, PresetPopover, *GROUP_MENUS, PresetMenu, ObjectMenu)

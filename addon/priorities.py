@@ -67,11 +67,15 @@ def in_words(rows: Sequence[Row], row: Row) -> str:
     """Return over whom a place wins and to whom it gives way, the nearest first."""
     first = bisect_left(rows, row.priority, key=_number)
     last = bisect_right(rows, row.priority, key=_number)
-    beside = [other for other in rows[first:last] if other.owner != row.owner]
+    beside = [other for other in rows[first : min(last, first + MOST_NAMES + 1)] if other.owner != row.owner]
     parts = [
-        f"{what} {_named(others)}"
-        for what, others in (("wins over", rows[last:]), ("gives way to", rows[:first][::-1]), ("is one with", beside))
-        if others
+        f"{what} {_named(others, count)}"
+        for what, others, count in (
+            ("wins over", rows[last : last + MOST_NAMES], len(rows) - last),
+            ("gives way to", rows[max(first - MOST_NAMES, 0) : first][::-1], first),
+            ("is one with", beside, last - first - 1),
+        )
+        if count
     ]
     return "; ".join(parts) or "is alone"
 
@@ -80,9 +84,11 @@ def _number(row: Row) -> int:
     return row.priority
 
 
-def _named(rows: Sequence[Row]) -> str:
-    more = len(rows) - MOST_NAMES
-    return ", ".join(row.owner.name for row in rows[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
+def _named(rows: Sequence[Row], count: int) -> str:
+    """The first few of many, for a sentence."""
+    names = [row.owner.name for row in rows[:MOST_NAMES]]
+    more = count - len(names)
+    return ", ".join(names) + (f" and {more} more" if more else "")
 
 
 def hindrance(owner: Owner) -> str:

@@ -39,7 +39,7 @@ _CHANGES = tuple(
 
 CLASSES = (
     *preferences.CLASSES,
-    media_rows.Place,
+    media_rows.NestedDielectricPlace,
     *operators.CLASSES,
     *preset_operators.CLASSES,
     *preset_menus.CLASSES,
@@ -79,7 +79,9 @@ def register() -> None:
             name="Active Medium", get=media_rows.get_active, set=media_rows.set_active, options=set()
         )
         undo.callback(delattr, bpy.types.Scene, "nested_dielectric_active")
-        bpy.types.WindowManager.nested_dielectric_places = bpy.props.CollectionProperty(type=media_rows.Place)
+        bpy.types.WindowManager.nested_dielectric_places = bpy.props.CollectionProperty(
+            type=media_rows.NestedDielectricPlace
+        )
         undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_places")
         undo.callback(media_rows.forget_wanted)
 
@@ -89,7 +91,7 @@ def register() -> None:
             undo.callback(place.remove, draw)
 
         bpy.types.WindowManager.nested_dielectric_presets = bpy.props.PointerProperty(
-            type=preset_menus.PresetChoice, options={"SKIP_SAVE"}
+            type=preset_menus.NestedDielectricPresetChoice, options={"SKIP_SAVE"}
         )
         undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_presets")
 

@@ -626,6 +626,46 @@ def test_a_mesh_with_modifiers_or_other_users_is_not_told_by_faces():
     assert (told_code(bead), told_by_faces(bead)) == (PROBE, None)
 
 
+def smooth_by_angle() -> bpy.types.NodeTree:
+    """The group that Shade Auto Smooth adds, in short: edges below an angle are smooth."""
+    tree = bpy.data.node_groups.new("Smooth by Angle", "GeometryNodeTree")
+    for in_out in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Mesh", in_out=in_out, socket_type="NodeSocketGeometry")
+    first, angle, compare, smooth, last = (
+        tree.nodes.new(kind)
+        for kind in (
+            "NodeGroupInput",
+            "GeometryNodeInputMeshEdgeAngle",
+            "FunctionNodeCompare",
+            "GeometryNodeSetShadeSmooth",
+            "NodeGroupOutput",
+        )
+    )
+    smooth.domain = "EDGE"
+    compare.operation = "LESS_EQUAL"
+    tree.links.new(first.outputs[0], smooth.inputs["Mesh"])
+    tree.links.new(angle.outputs["Unsigned Angle"], compare.inputs[0])
+    tree.links.new(compare.outputs[0], smooth.inputs["Shade Smooth"])
+    tree.links.new(smooth.outputs[0], last.inputs[0])
+    return tree
+
+
+def test_media_that_are_shaded_smooth_by_angle_are_told_as_without():
+    scene = fresh()
+    beads = [ball(str(x), 1.0, medium(str(x), 1.5), x, (1.1 * x, 0.1, 0.2)) for x in range(2)]
+    nd.analyse(scene)
+    known = [(told_code(bead), list(told_by_faces(bead))) for bead in beads]
+    assert known[0][0] == FACES
+    group = smooth_by_angle()
+    for bead in beads:
+        bead.modifiers.new("Smooth by Angle", "NODES").node_group = group
+    nd.analyse(scene)
+    assert [(told_code(bead), list(told_by_faces(bead))) for bead in beads] == known
+    group.nodes.new("GeometryNodeInputSceneTime")
+    nd.analyse(scene)
+    assert [told_code(bead) for bead in beads] == [PROBE, PROBE]
+
+
 def test_a_mesh_that_overlaps_itself_is_found():
     scene = fresh()
     add_mesh("Double", balls((0.8, (-0.4, 0, 0)), (0.8, (0.4, 0.1, 0.1))), medium("Double", 1.5), 1)

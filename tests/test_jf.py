@@ -597,8 +597,3 @@ def test_the_command_does_not_overwrite_a_file_that_was_not_named(tmp_path, monk
     Path("b.ass").write_bytes(b"\x1f\x8b\xff")
     assert cli.main(["import-jf", "b.ass"]) == 1 and "unpack" in capsys.readouterr().err
     assert cli.main(["import-jf", "c.ass"]) == 1 and "c.ass" in capsys.readouterr().err
-
-
-def test_the_manual_gives_every_parameter_of_jf_a_home():
-    manual = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
-    assert [name for name in jf.JF_PARAMETERS if f"`{name}`" not in manual] == []

@@ -440,7 +440,7 @@ def test_the_users_folder_is_blenders_for_the_user_unless_the_preferences_name_a
 
 
 def test_every_setting_has_a_tooltip_without_a_full_stop():
-    classes = (preferences.Preferences, *preset_operators.CLASSES, preset_menus.PresetChoice)
+    classes = (preferences.Preferences, *preset_operators.CLASSES, preset_menus.NestedDielectricPresetChoice)
     for cls in classes:
         for name, prop in cls.__annotations__.items():
             words = prop.keywords

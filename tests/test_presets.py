@@ -278,7 +278,7 @@ def test_a_preset_is_whole(key):
     assert preset.description.endswith(".") and len(preset.description.split()) >= 4
     assert len(preset.source.split()) > 8
     if "transmittance" in preset.parameters:
-        assert all(1e-4 <= channel <= 1.0 for channel in material["transmittance"])
+        assert all(1e-6 <= channel <= 1.0 for channel in material["transmittance"])
         assert 0.001 <= preset.parameters["transmittance_depth"] <= 10.0
     if material["dispersion_model"] == "SELLMEIER":
         own = dispersion.sellmeier_ior(material["sellmeier_b"], material["sellmeier_c"], dispersion.LINE_D)

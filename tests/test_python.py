@@ -298,7 +298,3 @@ def test_the_shader_takes_exactly_the_tables_parameters():
         "Weight",
         "Wavelength",
     ]
-
-
-def test_the_manual_holds_the_parameter_table():
-    assert parameters.manual_table() in (ROOT / "README.md").read_text(encoding="utf-8")

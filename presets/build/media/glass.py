@@ -52,7 +52,7 @@ MEDIA = (
         "tumbler, wine glass, cup, goblet, tableware, clear, jar",
         "Glass of tableware, low in iron: colourless, with the faintest green where one looks along it.",
         f"{RUBIN} Absorption: k of its low-iron glass, as measured.",
-        0.1,
+        0.004,
         Measured("glass/soda-lime/Rubin-lowiron"),
     ),
     _glass(
@@ -61,7 +61,7 @@ MEDIA = (
         "pane, float glass, green edge, shelf, mirror, table top",
         "Float glass: clear through the pane, green along its edge.",
         f"{RUBIN} Absorption: k of its clear window glass, as measured.",
-        0.1,
+        0.004,
         Measured("glass/soda-lime/Rubin-clear"),
     ),
     _glass(
@@ -118,7 +118,7 @@ MEDIA = (
         "Lead glass of cut decanters, chandeliers and wine glasses, with more sparkle and fire than window glass.",
         "Schott (2017), data sheet LLF1, a lead silicate glass with the index of lead crystal, Sellmeier form, index "
         "against air; internal transmittance of the same sheet, from the refractiveindex.info database.",
-        0.1,
+        0.005,
         Measured("specs/SCHOTT-optical/LLF1"),
         index=Sellmeier((1.21640125, 0.13366454, 0.883399468), (0.00857807248, 0.0420143003, 107.59306)),
         disperse=True,
@@ -130,7 +130,7 @@ MEDIA = (
         "Heat-resisting glass of oven dishes, teapots and laboratory ware.",
         "Schott (2021), BOROFLOAT 33 - Optical Properties: Sellmeier form fitted to its table, and k from its "
         "transmittance, both as in the refractiveindex.info database.",
-        0.1,
+        0.004,
         Measured("specs/SCHOTT-misc/BOROFLOAT33"),
         index=Sellmeier((0.3542, 0.78657, 0.18285), (0.0, 0.0117852736, 19.598329)),
     ),
@@ -172,7 +172,7 @@ MEDIA = (
         "clear bottle, jar, jam, vodka, container, white glass",
         "Colourless container glass (glassmakers call it flint), faintly green where it is thick.",
         f"{RUBIN} Absorption: {VOGT.format(0.04)}.",
-        0.05,
+        0.004,
         _iron(0.04),
     ),
 )

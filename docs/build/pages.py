@@ -1,0 +1,127 @@
+"""The manual's pages that come from the code: every parameter, and every preset with its sources."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from nested_dielectric import spectra
+from nested_dielectric.parameters import PARAMETERS, Parameter
+from nested_dielectric.presets import GROUPS, Preset, load_preset, preset_names
+
+FOLDER = Path(__file__).resolve().parent.parent
+
+PARAMETERS_INTRODUCTION = """\
+# Every parameter
+
+Made from the code by `make docs`. The five that artists change first are on the panel *Medium*; all others stand under
+*Advanced*, by the headings below. A link or a script may give a socket any number: the nearest within the limits counts
+([Nodes](nodes.md)).
+
+*Keyword* is the name in [Python](python.md) and in preset files. In Python, choices are the upper-case words. Values are
+those of a new node; [presets](presets.md) bring their own.
+"""
+
+SPECTRUM_NOTE = """\
+These four are no sockets but settings of the material (*Spectrum...* on the panel). `spectral_distribution` is {words}, \
+the name of a CIE illuminant or the path of a CSV file of wavelength (nm) and power.
+"""
+
+PRESETS_INTRODUCTION = """\
+# Presets
+
+Made from the files in `presets/` by `make docs`. *Depth* is the thickness at which people know the thing, and *Colour* is
+what white light is after it; when a preset is assigned, the depth becomes the object's own thickness
+([Colour](colour.md)). The numbers win by priority: lowest first.
+
+![All presets](pictures/presets.jpg)
+
+A preset is a readable file: TOML with a name, a group, tags, a description, the source of its numbers and a table
+`[parameters]` of [keywords](parameters.md). Your own are saved from the panel ([Five-minute start](start.md)).
+"""
+
+
+def _table(rows: list[tuple[str, ...]]) -> str:
+    head, *body = rows
+    lines = [head, ("---",) * len(head), *body]
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in lines) + "\n"
+
+
+def parameters_page() -> str:
+    """Return the page of all parameters, under the headings of the panel."""
+    parts = [PARAMETERS_INTRODUCTION]
+    for panel in dict.fromkeys(parameter.panel for parameter in PARAMETERS):
+        members = [parameter for parameter in PARAMETERS if parameter.panel == panel]
+        rows = [("Parameter", "Keyword", "Default", "Values", "What it does"), *map(_parameter_row, members)]
+        parts += [f"## {panel}\n", _table(rows), *_choices(members)]
+    words = ", ".join(f"`{choice.keyword}` ({choice.description})" for choice in spectra.DISTRIBUTIONS)
+    return "\n".join((*parts, SPECTRUM_NOTE.format(words=words)))
+
+
+def _parameter_row(parameter: Parameter) -> tuple[str, ...]:
+    label = parameter.label
+    name = f"**{parameter.name}**" + (f" (*{label}* on the panel)" if label else "")
+    return name, f"`{parameter.keyword}`", _default(parameter), _values(parameter), parameter.description
+
+
+def _default(parameter: Parameter) -> str:
+    if parameter.kind in ("COLOR", "VECTOR"):
+        return ", ".join(f"{component:g}" for component in parameter.default)
+    return {"SHADER": "none", "BOOL": "on" if parameter.default else "off"}.get(parameter.kind, str(parameter.default))
+
+
+def _values(parameter: Parameter) -> str:
+    if parameter.minimum is not None:
+        return f"{parameter.minimum:g} to {parameter.maximum:g}"
+    if parameter.kind == "BOOL":
+        return "on, off"
+    return ", ".join(f"`{choice.keyword}`" for choice in parameter.choices)
+
+
+def _choices(members: list[Parameter]) -> list[str]:
+    """What the words of menus mean, each list of words once."""
+    named: dict[tuple, list[str]] = {}
+    for parameter in members:
+        if parameter.choices:
+            named.setdefault(parameter.choices, []).append(parameter.name)
+    return [
+        f"*{', '.join(names)}*:\n\n"
+        + "".join(f"- `{choice.keyword}`, {choice.name}: {choice.description}\n" for choice in choices)
+        for choices, names in named.items()
+    ]
+
+
+def presets_page() -> str:
+    """Return the page of all presets by groups, and the sources of their numbers."""
+    parts = [PRESETS_INTRODUCTION]
+    presets = sorted(map(load_preset, preset_names()), key=lambda preset: preset.name)
+    for group in GROUPS:
+        members = [preset for preset in presets if preset.group == group]
+        if members:
+            head = ("Preset", "In Python", "IOR", "Colour at depth", "Priority", "What it is")
+            sources = "".join(f"- **{preset.name}**: {preset.source}\n" for preset in members)
+            parts += [f"## {group}\n", _table([head, *map(_preset_row, members)]), f"Sources:\n\n{sources}"]
+    return "\n".join(parts)
+
+
+def _preset_row(preset: Preset) -> tuple[str, ...]:
+    values = preset.parameters
+    ior = f"{values['ior']:.4g}" if "ior" in values else ""
+    priority = str(values.get("priority", 0))
+    return f"**{preset.name}**", f"`{preset.key}`", ior, _colour(preset), priority, preset.description
+
+
+def _colour(preset: Preset) -> str:
+    colour = preset.parameters.get("transmittance", (1.0, 1.0, 1.0))
+    if tuple(colour) == (1.0, 1.0, 1.0):
+        return "clear"
+    depth = preset.parameters.get("transmittance_depth", 1.0)
+    return f"{', '.join(f'{component:.2g}' for component in colour)} at {depth * 100:g} cm"
+
+
+PAGES = {"parameters.md": parameters_page, "presets.md": presets_page}
+
+
+def make() -> None:
+    """Write the pages."""
+    for name, page in PAGES.items():
+        (FOLDER / name).write_text(page(), encoding="utf-8")
