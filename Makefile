@@ -12,7 +12,7 @@ BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli 
 # Small renders mostly wait for one thread that compiles shaders, so two files at a time take half as long.
 PYTEST_OPTIONS := -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: demo presets docs test test-quick test-lts bench bench-quick extension clean
+.PHONY: demo presets assets docs test test-quick test-lts bench bench-quick extension clean
 
 demo: $(STAMP)
 	$(PYTHON) -m nested_dielectric demo
@@ -42,7 +42,14 @@ bench: $(STAMP)
 bench-quick: $(STAMP)
 	$(PYTHON) benchmarks/bench.py --quick
 
-extension: $(STAMP) $(WHEEL)
+# Pictures of presets, those alone that have none or have changed since, and the asset library that shows them. The
+# long-term release writes it, as every Blender that the extension is for reads what that one has written.
+assets: $(STAMP) $(LTS_STAMP)
+	$(PYTHON) assets/previews.py
+	$(LTS_PYTHON) assets/library.py library
+
+extension: $(STAMP) $(LTS_STAMP) $(WHEEL)
+	$(LTS_PYTHON) assets/library.py library
 	@mkdir -p $(DIST)
 	$(BLENDER_EXTENSION) build --output-dir $(DIST)
 	$(BLENDER_EXTENSION) validate $(DIST)/nested_dielectric-0.2.0.zip

@@ -28,7 +28,7 @@ from .media import assign, get_priority, set_priority
 from .parameters import ParameterError
 from .passes import add_passes
 from .preparation import Preparation, prepare
-from .presets import preset_names
+from .preset_library import preset_names
 from .registration import register, unregister
 from .versions import update_materials
 

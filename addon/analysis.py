@@ -53,6 +53,7 @@ from .node_group import (
     is_offset_group,
 )
 from .parameters import BY_NAME
+from .shapes import mesh_of
 from .trees import is_plugged
 
 SETTLED_MODIFIERS = frozenset(
@@ -615,23 +616,9 @@ def _row(
 def _corners(evaluated: bpy.types.Object) -> np.ndarray:
     """(n, 3) points between which an object lies, in its own space. The box of a text does not count its thickness."""
     if evaluated.type in _CONVERTED:
-        vertices, _ = _mesh_of(evaluated)
+        vertices, _ = mesh_of(evaluated)
         return vertices if len(vertices) else np.zeros((1, 3))
     return np.array([tuple(corner) for corner in evaluated.bound_box])
-
-
-def _mesh_of(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
-    """:func:`triangles_of` an evaluated object; none of one that shows nothing."""
-    try:
-        mesh = evaluated.to_mesh()
-    except RuntimeError:
-        mesh = None
-    if mesh is None:
-        return np.empty((0, 3), dtype=np.float32), np.empty((0, 3), dtype=np.int32)
-    try:
-        return triangles_of(mesh)
-    finally:
-        evaluated.to_mesh_clear()
 
 
 def _grown(box: np.ndarray, margin: float) -> np.ndarray:
@@ -681,7 +668,7 @@ def _body(
 
 def _solid(evaluated: bpy.types.Object) -> Solid:
     """An evaluated mesh, the same object as long as nothing changes it."""
-    vertices, triangles = _mesh_of(evaluated)
+    vertices, triangles = mesh_of(evaluated)
     if not meshes.is_closed(triangles):
         triangles = meshes.same_places(vertices)[triangles]
     content = hashlib.sha256(vertices)
@@ -690,20 +677,6 @@ def _solid(evaluated: bpy.types.Object) -> Solid:
     if key not in _solids:
         _solids[key] = Solid(vertices.astype(np.float64), triangles)
     return _solids[key]
-
-
-def triangles_of(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """A mesh's vertices, (n, 3) float32, and the corners of its triangles, (m, 3) int32."""
-    mesh.calc_loop_triangles()
-    vertices = np.empty((len(mesh.vertices), 3), dtype=np.float32)
-    triangles = np.empty((len(mesh.loop_triangles), 3), dtype=np.int32)
-    if len(vertices):  # without them it has no attribute
-        mesh.attributes["position"].data.foreach_get("vector", vertices.reshape(-1))
-    if 0 < len(triangles) == len(mesh.polygons):  # all are triangles, and the attribute is read fifty times as fast
-        mesh.attributes[".corner_vert"].data.foreach_get("value", triangles.reshape(-1))
-    else:
-        mesh.loop_triangles.foreach_get("vertices", triangles.reshape(-1))
-    return vertices, triangles
 
 
 def _forget_unused() -> None:

@@ -12,7 +12,7 @@ from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
 from . import contacts, meshes
-from .analysis import SHAPED, is_relative, listed, triangles_of
+from .analysis import SHAPED, is_relative, listed
 from .animation import curves
 from .foreign import is_clear, lamp_box, sends_light_on
 from .identity import known_number
@@ -30,6 +30,7 @@ from .materials import (
 from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media, own_priority
 from .node_group import BY_VOLUME_SOCKET, MASK_OUTPUT, MATERIAL_SLOTS
 from .parameters import MAX_PRIORITY, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS
+from .shapes import triangles_of
 from .trees import node_problems, shows_others_blindly, socket_value
 
 NEAR = 1e-4

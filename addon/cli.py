@@ -23,9 +23,9 @@ from .iced_water import build_scene
 from .jf import JfError, read_nodes, report, translate
 from .materials import dielectric_node, new_material
 from .output import check_picture, reason, save_blend
-from .parameters import ParameterError
+from .parameters import BY_KEYWORD, ParameterError
 from .preparation import prepare
-from .presets import load_preset, preset_names
+from .preset_library import catalogue
 from .rendering import ProgressLine, file_format_of, render_frame
 from .spectra import DISTRIBUTIONS, GAMUTS, WAVELENGTHS, SpectrumError, plot, spectral_table
 from .versions import update_materials
@@ -216,10 +216,13 @@ def _update(options: argparse.Namespace) -> None:
 
 
 def _presets(options: argparse.Namespace) -> None:
-    presets = [load_preset(key) for key in preset_names()]
-    width = max(len(preset.key) for preset in presets)
-    for preset in presets:
-        print(f"{preset.key:{width}} {preset.parameters['ior']:<9} {preset.description}")
+    found = catalogue()
+    width = max(map(len, found.presets))
+    for key, preset in found.presets.items():
+        index = preset.parameters.get("ior", BY_KEYWORD["ior"].default)
+        print(f"{key:{width}} {index:<9} {preset.description}{' (yours)' if key in found.own else ''}")
+    for problem in found.problems:
+        print(f"{PROGRAM}: {problem}", file=sys.stderr)
 
 
 def _bake(options: argparse.Namespace) -> None:

@@ -24,7 +24,8 @@ from .parameters import (
     ParameterError,
     check_keywords,
 )
-from .presets import Preset, load_preset
+from .preset_library import load_preset
+from .presets import Preset
 from .spectra import SpectrumError, spectral_table
 from .trees import complete_nodes, dielectric_places, shows_dielectric, shows_other_volume, value_socket
 from .working_space import working_gamut
@@ -35,6 +36,11 @@ _KINDS = {(parameter.name, _SOCKET_KINDS.get(parameter.kind, parameter.kind)) fo
 
 PRESET_PROPERTY = "nd_preset"
 """Custom property of materials that presets made: what they are and where their numbers come from."""
+
+KEY_PROPERTY = "nd_preset_key"
+"""Custom property of materials that presets made: the preset's key."""
+
+DEPTH = BY_KEYWORD["transmittance_depth"]
 
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
@@ -78,13 +84,14 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
     """Make a material whose surface is a nested dielectric.
 
     :param name: name of the material; Blender numbers it if it is taken.
-    :param preset: a name of :func:`preset_names` whose values are set first.
+    :param preset: a name of :func:`preset_names` whose values are set first; its lengths, in metres, become those of the
+        scene's units.
     :param keywords: socket names in snake_case, such as ``ior=1.33``; enumerations are upper-case words. With Sellmeier
         coefficients and no ``ior`` the index is that of the coefficients.
     :raises ParameterError: for an unknown preset or keyword, or a value outside its limits. Nothing has been made then.
     """
     loaded = None if preset is None else load_preset(preset)
-    values = {} if loaded is None else check_keywords(loaded.parameters)
+    values = {} if loaded is None else check_keywords(loaded.parameters) | {DEPTH: measured_depth(loaded)}
     values.update(check_keywords(keywords))
     if keywords.keys() & {"sellmeier_b", "sellmeier_c"} and "ior" not in keywords:
         values[BY_KEYWORD["ior"]] = _sellmeier_index(values)
@@ -112,7 +119,15 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
     material.diffuse_color = (*node.inputs["Transmittance"].default_value[:3], 0.3)
     if loaded is not None:
         material[PRESET_PROPERTY] = f"{loaded.description} {loaded.source}"
+        material[KEY_PROPERTY] = loaded.key
     return material
+
+
+def measured_depth(preset: Preset) -> float:
+    """Return the Transmittance Depth of a preset in units of the scene that is open; of a clear one as it has it."""
+    if not preset.has_colour:
+        return preset.depth
+    return DEPTH.bounded(preset.depth / bpy.context.scene.unit_settings.scale_length)
 
 
 def _new_node(tree: bpy.types.NodeTree, group: bpy.types.NodeTree) -> bpy.types.ShaderNodeGroup:
@@ -339,17 +354,10 @@ def medium_material(obj: bpy.types.Object) -> bpy.types.Material | None:
     return next((material for _, material in dielectrics(obj)), None)
 
 
-def preset_material(preset: str) -> bpy.types.Material:
-    """Return a material of this file that is as the preset has it, made where there is none or all have been changed."""
-    loaded = load_preset(preset)
-    for material in bpy.data.materials:
-        if f"{material.name}.".startswith(f"{loaded.name}.") and is_preset(material, loaded):
-            return material
-    return new_material(loaded.name, preset=preset)
-
-
 def is_preset(material: bpy.types.Material, preset: Preset) -> bool:
-    """Tell whether a material of this file is what :func:`new_material` makes of a preset, whatever its name."""
+    """Tell whether a material of this file is what :func:`new_material` makes of a preset, whatever its name and
+    Transmittance Depth.
+    """
     node = dielectric_node(material)
     if node is None or material.library is not None or len(material.node_tree.nodes) > 3:
         return False
@@ -358,7 +366,7 @@ def is_preset(material: bpy.types.Material, preset: Preset) -> bool:
     return (
         not any(socket.is_linked for socket in node.inputs)
         and not any(curves(material.node_tree.animation_data))
-        and all(_holds(node, parameter, values.get(parameter, parameter.default)) for parameter in SOCKETS)
+        and all(_holds(node, parameter, values.get(parameter, parameter.default)) for parameter in SOCKETS if parameter != DEPTH)
         and spectrum_settings(material) == settings
     )
 

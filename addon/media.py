@@ -17,10 +17,10 @@ from .materials import (
     looked_up_once,
     may_disperse,
     medium_material,
-    preset_material,
     unchanged_nodes,
 )
 from .parameters import BY_KEYWORD, GROUP_NAME, MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
+from .preset_materials import preset_material
 from .trees import mend_nodes
 
 SOLID_TYPES = frozenset(("MESH", "CURVE", "SURFACE", "FONT", "META"))
@@ -44,8 +44,8 @@ def assign(
     """Make an object a medium.
 
     The material takes the place of the object's active material, or its first slot. ``material`` may be the name of a
-    preset:
-    a material of that preset that is already in the file is used again.
+    preset: then its colour is that of the preset through as much of it as the object is thick, and a material of that
+    preset that is already in the file is used again where its depth comes near.
 
     :param priority: the object's own priority; None leaves that of the material in force.
     :raises ParameterError: if the object cannot enclose a medium, or the preset or the priority is unknown.
@@ -58,7 +58,7 @@ def assign(
     if priority is not None:
         check_priority(priority)
     if isinstance(material, str):
-        material = preset_material(material)
+        material = preset_material(material, [obj])
     else:
         mend_nodes(material)
         if dielectric_node(material) is None:

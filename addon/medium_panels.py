@@ -13,7 +13,7 @@ from .dispersion_panels import draw_dispersion, draw_spectrum
 from .drawing import Sidebar, draw_parameter, draw_text
 from .lights import carried_lamps
 from .materials import get_parameter, half_distance, parameter_socket, rendered_node
-from .operators import AssignPreset, active_medium
+from .operators import active_medium
 from .parameters import (
     BASIC_KEYWORDS,
     BASICS,
@@ -23,6 +23,7 @@ from .parameters import (
     SPECTRUM_PANEL,
     has_effect,
 )
+from .preset_menus import draw_fit_depth, draw_presets
 
 DISPERSION_PANEL = "Dispersion"
 LOBES_PANEL = "Direct Light"
@@ -47,7 +48,7 @@ def known_values(scene: bpy.types.Scene, material: bpy.types.Material) -> dict[s
 def draw_basics(layout: bpy.types.UILayout, context: bpy.types.Context, material: bpy.types.Material) -> None:
     """The preset, colour, depth, index, roughness and priority of a medium, and what colour and depth come to."""
     values = known_values(context.scene, material)
-    layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text=material.name, icon="MATERIAL")
+    draw_presets(layout, material.name)
     column = layout.column()
     for keyword in BASIC_KEYWORDS:
         draw_parameter(column, material, keyword, has_effect(BY_KEYWORD[keyword], values))
@@ -56,6 +57,7 @@ def draw_basics(layout: bpy.types.UILayout, context: bpy.types.Context, material
         units = context.scene.unit_settings
         length = bpy.utils.units.to_string(units.system, "LENGTH", distance * units.scale_length, precision=3)
         draw_text(layout, context, f"Half of the light is left after {length}", "INFO")
+        draw_fit_depth(layout)
 
 
 def draw_advanced(

@@ -47,6 +47,21 @@ def signed_volume(vertices: np.ndarray, triangles: np.ndarray) -> float:
     return float(np.dot(normal_x, x[0] + x[1] + x[2]) / 6.0)
 
 
+def surface_area(vertices: np.ndarray, triangles: np.ndarray) -> float:
+    """Return the area of a mesh. ``vertices``: (m, 3), squared in the result."""
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    return float(np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2.0)
+
+
+def mean_chord(vertices: np.ndarray, triangles: np.ndarray) -> float:
+    """Return the mean length of the straight ways through a closed mesh, in units of its ``vertices``: 4 V / S, exact for
+    convex bodies in light from everywhere (Cauchy 1850, Note sur divers théorèmes relatifs à la rectification des courbes
+    et à la quadrature des surfaces); 0 for what has no surface.
+    """
+    area = surface_area(vertices, triangles)
+    return 4.0 * abs(signed_volume(vertices, triangles)) / area if area > 0.0 else 0.0
+
+
 def is_closed(triangles: np.ndarray) -> bool:
     """Tell whether every directed edge is met exactly as often as its reverse, without sorting the edges.
 

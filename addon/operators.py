@@ -22,7 +22,6 @@ from .materials import (
 from .media_list import listed_media
 from .parameters import BY_KEYWORD, DISPERSION_MODELS, ParameterError, check_keywords
 from .passes import add_passes
-from .presets import load_preset, preset_names
 from .spectra import DISTRIBUTIONS, GAMUTS, SpectrumError, illuminant_names
 from .versions import outdated_materials, update_materials
 
@@ -48,13 +47,6 @@ _ILLUMINANT_GROUPS = (
 """How the names of a column of the menu begin, and its heading; the first that fits."""
 
 
-@cache
-def _preset_items() -> tuple[tuple[str, str, str], ...]:
-    """The presets as Blender wants its menus; kept, because Blender does not hold on to the strings itself."""
-    presets = [load_preset(key) for key in preset_names()]
-    return tuple((preset.key, preset.name, preset.description) for preset in presets)
-
-
 def _choice_items(choices: tuple[Choice, ...]) -> tuple[tuple[str, str, str], ...]:
     """An enumeration's words as Blender wants its menus."""
     return tuple((choice.keyword, choice.name, choice.description) for choice in choices)
@@ -62,7 +54,8 @@ def _choice_items(choices: tuple[Choice, ...]) -> tuple[tuple[str, str, str], ..
 
 @cache
 def _distribution_items() -> tuple[tuple[str, str, str], ...]:
-    """The words for distributions, the CIE's illuminants and a file; kept, as :func:`_preset_items`.
+    """The words for distributions, the CIE's illuminants and a file; kept, because Blender does not hold on to the
+    strings itself.
 
     The first call imports colour-science, which takes a second.
     """
@@ -98,50 +91,12 @@ def coefficients_ior(node: bpy.types.ShaderNodeGroup) -> float:
     return sellmeier_ior(b, c, LINE_D)
 
 
-def _targets(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """The selected objects that can be media, or else the active object."""
-    selected = [obj for obj in context.selected_editable_objects or () if obj.type in media.SOLID_TYPES]
-    return selected or [obj for obj in [context.object] if obj is not None and obj.type in media.SOLID_TYPES]
-
-
 def _supported(cls: type[bpy.types.Operator]) -> bool:
     """Grey an operator out, with the reason, in a Blender that cannot render nested dielectrics."""
     problem = blender_problem()
     if problem:
         cls.poll_message_set(problem)
     return not problem
-
-
-class AssignPreset(bpy.types.Operator):
-    """Make the selected objects media of a preset: glass, water, ice and others"""
-
-    bl_idname = "nested_dielectric.assign_preset"
-    bl_label = "Assign Nested Dielectric"
-    bl_options = {"REGISTER", "UNDO"}
-
-    preset: bpy.props.EnumProperty(name="Preset", items=lambda self, context: _preset_items())
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not _targets(context):
-            cls.poll_message_set("Select a mesh, curve, surface, text or metaball")
-            return False
-        return _supported(cls)
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        objects = _targets(context)
-        before = set(bpy.data.materials)
-        try:
-            for obj in objects:
-                material = media.assign(obj, self.preset)
-        except ParameterError as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        self.report({"INFO"}, f"{material.name} assigned to {', '.join(obj.name for obj in objects)}")
-        name = load_preset(self.preset).name
-        if material not in before and material.name != name:
-            self.report({"INFO"}, f"Material {name!r} is not as the preset has it, so {material.name!r} was made")
-        return {"FINISHED"}
 
 
 class _MaterialOperator(bpy.types.Operator):
@@ -430,13 +385,7 @@ class AddPasses(_SceneOperator):
         return add_passes(scene)
 
 
-def draw_preset_menu(self: bpy.types.Menu, context: bpy.types.Context) -> None:
-    """The presets as a submenu of a menu of Blender's."""
-    self.layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Nested Dielectric")
-
-
 CLASSES = (
-    AssignPreset,
     DispersionModel,
     SellmeierIor,
     Spectrum,

@@ -9,6 +9,7 @@ import bpy
 
 from . import (
     add_menu,
+    asset_library,
     dispersion_panels,
     icons,
     lamp_panel,
@@ -18,7 +19,11 @@ from . import (
     medium_panels,
     notices,
     operators,
+    preferences,
     preparation_operators,
+    preset_menus,
+    preset_operators,
+    preset_pictures,
     priority_operators,
     scene_panels,
     versions,
@@ -33,8 +38,11 @@ _CHANGES = tuple(
 """Handlers of all that may change which media a scene has."""
 
 CLASSES = (
+    *preferences.CLASSES,
     media_rows.NestedDielectricPlace,
     *operators.CLASSES,
+    *preset_operators.CLASSES,
+    *preset_menus.CLASSES,
     *add_menu.CLASSES,
     *priority_operators.CLASSES,
     *preparation_operators.CLASSES,
@@ -63,8 +71,9 @@ def register() -> None:
 
         icons.open_icons()
         undo.callback(icons.close_icons)
-        dispersion_panels.open_pictures()
-        undo.callback(dispersion_panels.close_pictures)
+        for pictures in (dispersion_panels, preset_pictures):
+            pictures.open_pictures()
+            undo.callback(pictures.close_pictures)
 
         bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
             name="Active Medium", get=media_rows.get_active, set=media_rows.set_active, options=set()
@@ -81,12 +90,20 @@ def register() -> None:
             place.append(draw)
             undo.callback(place.remove, draw)
 
-        for menu, entry in (
-            (bpy.types.VIEW3D_MT_object, operators.draw_preset_menu),
-            (bpy.types.NODE_MT_category_shader_shader, add_menu.draw_entry),
+        bpy.types.WindowManager.nested_dielectric_presets = bpy.props.PointerProperty(
+            type=preset_menus.NestedDielectricPresetChoice, options={"SKIP_SAVE"}
+        )
+        undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_presets")
+
+        for add, menu, entry in (
+            ("prepend", bpy.types.VIEW3D_MT_object, preset_menus.draw_object_menu),
+            ("append", bpy.types.NODE_MT_category_shader_shader, add_menu.draw_entry),
         ):
-            menu.append(entry)
+            getattr(menu, add)(entry)
             undo.callback(menu.remove, entry)
+
+        asset_library.follow(preferences.preference("asset_library"))
+        undo.callback(asset_library.follow, False)
 
         for handlers, handler in (
             (bpy.app.handlers.render_init, warn_before_render),

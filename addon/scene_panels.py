@@ -15,10 +15,11 @@ from .media import get_priority, own_priority
 from .media_list import Line, is_open, listed_lines, listed_media
 from .media_rows import active_line, make_places
 from .notices import render_problem
-from .operators import AssignPreset, UpdateMaterials
+from .operators import UpdateMaterials
 from .parameters import GROUP_NAME, PRIORITY_PROPERTY
 from .preparation import taken_back
 from .preparation_operators import ClearAnalysis, Prepare, PutBack, ShowProblem
+from .preset_menus import draw_presets
 from .priorities import in_words
 from .priority_operators import OpenMaterial, PriorityMove, PriorityOwn, SelectObjects, SpaceOut
 from .report import Report, last_report
@@ -250,7 +251,7 @@ def draw_active(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         column = layout.column(align=True)
         column.label(text=f"{obj.name}: {material.name}", icon="MATERIAL")
         draw_priority(column.row(align=True), obj, text="Priority")
-    layout.operator_menu_enum(AssignPreset.bl_idname, "preset", text="Assign Preset", icon="MATERIAL")
+    draw_presets(layout)
 
 
 def draw_priority(layout: bpy.types.UILayout, obj: bpy.types.Object, text: str = "") -> None:

@@ -37,7 +37,20 @@ assert colour.__file__.startswith(bpy.utils.user_resource("EXTENSIONS")), colour
 assert "scipy" not in sys.modules and "matplotlib" not in sys.modules
 assert not addon_utils._extensions_warnings_get().get("{MODULE}"), addon_utils._extensions_warnings_get()
 
+libraries = bpy.context.preferences.filepaths.asset_libraries
+listed = [library for library in libraries if library.name == "Nested Dielectric"]
+assert [library.import_method for library in listed] == ["APPEND"], listed
+folder = Path(listed[0].path)
+assert folder.is_relative_to(bpy.utils.user_resource("EXTENSIONS")), folder
+bpy.ops.wm.append(directory=str(folder / "nested_dielectric.blend" / "Material") + "/", filename="Diamond")
+assert bpy.data.materials["Diamond.001"].node_tree.nodes["Nested Dielectric"].inputs["IOR"].default_value > 2.4
+bpy.ops.nested_dielectric.save_preset(name="Mine")
+mine = Path(bpy.utils.extension_path_user("{MODULE}", path="presets")) / "mine.toml"
+assert mine.is_file() and "mine" in nd.preset_names(), mine
+assert bpy.context.preferences.addons["{MODULE}"].preferences.asset_library
+
 bpy.ops.preferences.addon_disable(module="{MODULE}")
+assert "Nested Dielectric" not in libraries.keys()
 assert not [name for name in dir(bpy.types) if name.upper().startswith("NESTED_DIELECTRIC")]
 print("all well")
 """
@@ -55,13 +68,12 @@ def project() -> dict:
 def archive(tmp_path_factory):
     """The zip as ``make extension`` builds and validates it.
 
-    -o keeps make from renewing the environment that this test runs in.
+    -o keeps make from renewing the environments that tests run in.
     """
     folder = tmp_path_factory.mktemp("dist")
-    variables = (f"DIST={folder}", f"PYTHON={sys.executable}")
-    result = subprocess.run(
-        ["make", "-o", ".venv/.installed", "extension", *variables], cwd=ROOT, capture_output=True, text=True
-    )
+    variables = (f"DIST={folder}", f"PYTHON={sys.executable}", f"LTS_PYTHON={sys.executable}")
+    kept = ("-o", ".venv/.installed", "-o", ".venv-lts/.installed")
+    result = subprocess.run(["make", *kept, "extension", *variables], cwd=ROOT, capture_output=True, text=True)
     assert result.returncode == 0, result.stdout + result.stderr
     (path,) = folder.glob("*.zip")
     return path
@@ -71,12 +83,32 @@ def test_the_zip_holds_the_extension_and_nothing_else(archive):
     names = set(zipfile.ZipFile(archive).namelist())
     sources = {
         path.relative_to(ROOT).as_posix()
-        for folder, pattern in (("addon", "*.py"), ("osl", "*"), ("presets", "*.toml"))
+        for folder, pattern in (
+            ("addon", "*.py"),
+            ("osl", "*"),
+            ("presets", "*.toml"),
+            ("presets/previews", "*.jpg"),
+            ("library", "*"),
+        )
         for path in (ROOT / folder).glob(pattern)
     }
     top = {"__init__.py", "blender_manifest.toml", "README.md", "LICENSE"}
     wheels = {wheel.removeprefix("./") for wheel in manifest()["wheels"]}
     assert names == sources | wheels | {name for name in top if (ROOT / name).is_file()}
+
+
+def test_the_zip_is_below_15_mb_without_and_40_mb_with_the_asset_library(archive):
+    library = [each for each in zipfile.ZipFile(archive).infolist() if each.filename.startswith("library/")]
+    assert {each.filename for each in library} == {"library/nested_dielectric.blend", "library/blender_assets.cats.txt"}
+    size = archive.stat().st_size
+    assert size < 40e6
+    assert size - sum(each.compress_size for each in library) < 15e6
+
+
+def test_the_manifest_names_a_manual_what_it_may_do_and_the_licence_of_the_media():
+    assert manifest()["website"].startswith("https://")
+    assert manifest()["permissions"].keys() == {"files"}
+    assert manifest()["license"] == ["SPDX:GPL-3.0-or-later", "SPDX:CC0-1.0"]
 
 
 def test_the_extension_and_the_python_package_have_one_version(archive):
@@ -96,4 +128,4 @@ def test_an_installed_extension_enables_in_a_fresh_profile_and_makes_materials_a
     )
     assert result.returncode == 0, result.stdout + result.stderr
     assert result.stdout.endswith("all well\n")
-    assert result.stderr == ""
+    assert result.stderr == "Nested Dielectric: updated Diamond.001: was one of several copies\n"

@@ -4,8 +4,19 @@ import bpy
 import pytest
 
 import nested_dielectric as nd
-from nested_dielectric import lamp_panel, lights, materials, media, node_group, operators, preparation_operators, registration
-from nested_dielectric import scene_panels
+from nested_dielectric import (
+    lamp_panel,
+    lights,
+    materials,
+    media,
+    node_group,
+    operators,
+    preparation_operators,
+    preset_menus,
+    preset_operators,
+    registration,
+    scene_panels,
+)
 from nested_dielectric.passes import compositors
 from ui import add_cube, add_dispersive, add_media, labels_and_operators, texts
 
@@ -19,25 +30,29 @@ def priorities():
 def in_blender():
     """What the extension has put into Blender."""
     classes = {cls for cls in registration.CLASSES if cls.is_registered}
-    menus = bpy.types.VIEW3D_MT_object._dyn_ui_initialize().count(operators.draw_preset_menu)
+    menus = bpy.types.VIEW3D_MT_object._dyn_ui_initialize().count(preset_menus.draw_object_menu)
     handlers = bpy.app.handlers.render_init[:].count(registration.warn_before_render)
     pictures = len(bpy.utils.previews._uuid_open)
-    return len(classes), menus, handlers, hasattr(bpy.types.Scene, "nested_dielectric_active"), pictures
+    properties = [
+        hasattr(bpy.types.Scene, "nested_dielectric_active"),
+        hasattr(bpy.types.WindowManager, "nested_dielectric_presets"),
+    ]
+    return len(classes), menus, handlers, properties, pictures
 
 
 def test_registering_twice_changes_nothing():
     once = in_blender()
     nd.register()
-    assert in_blender() == once == (len(registration.CLASSES), 1, 1, True, 2)
+    assert in_blender() == once == (len(registration.CLASSES), 1, 1, [True, True], 3)
 
 
 def test_unregistering_leaves_no_classes_behind():
     nd.unregister()
-    assert in_blender() == (0, 0, 0, False, 0)
+    assert in_blender() == (0, 0, 0, [False, False], 0)
     assert not [name for name in dir(bpy.types) if name.upper().startswith("NESTED_DIELECTRIC")]
     nd.unregister()
     nd.register()
-    assert in_blender() == (len(registration.CLASSES), 1, 1, True, 2)
+    assert in_blender() == (len(registration.CLASSES), 1, 1, [True, True], 3)
 
 
 def test_a_registration_that_fails_raises_and_leaves_nothing_behind(monkeypatch):
@@ -48,7 +63,7 @@ def test_a_registration_that_fails_raises_and_leaves_nothing_behind(monkeypatch)
     monkeypatch.setattr(registration.bpy.utils, "register_cli_command", fail)
     with pytest.raises(ValueError, match="no more commands"):
         nd.register()
-    assert in_blender() == (0, 0, 0, False, 0)
+    assert in_blender() == (0, 0, 0, [False, False], 0)
 
 
 def test_an_unsupported_blender_still_gets_the_panels_and_says_why(monkeypatch, capsys):
@@ -83,7 +98,7 @@ def test_presets_are_greyed_out_where_nothing_can_be_a_medium():
 
 def test_operators_are_greyed_out_in_a_blender_that_cannot_render_media(monkeypatch):
     add_cube("A")
-    for module in (operators, preparation_operators):
+    for module in (operators, preparation_operators, preset_operators):
         monkeypatch.setattr(module, "blender_problem", lambda: "this Blender cannot")
     assert not bpy.ops.nested_dielectric.assign_preset.poll()
     assert not bpy.ops.nested_dielectric.prepare.poll()

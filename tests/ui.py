@@ -62,6 +62,7 @@ def draw_panel(panel, width, read_output):
         object=bpy.context.object,
         region=SimpleNamespace(width=width),
         preferences=SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
+        window_manager=bpy.context.window_manager,
     )
     drawn = []
     read_output()
