@@ -45,11 +45,11 @@ bench-quick: $(STAMP)
 # Pictures of presets, those alone that have none or have changed since, and the asset library that shows them. The
 # long-term release writes it, as every Blender that the extension is for reads what that one has written.
 assets: $(STAMP) $(LTS_STAMP)
-	$(PYTHON) assets/previews.py
-	$(LTS_PYTHON) assets/library.py library
+	$(PYTHON) presets/assets/previews.py
+	$(LTS_PYTHON) presets/assets/library.py library
 
 extension: $(STAMP) $(LTS_STAMP) $(WHEEL)
-	$(LTS_PYTHON) assets/library.py library
+	$(LTS_PYTHON) presets/assets/library.py library
 	@mkdir -p $(DIST)
 	$(BLENDER_EXTENSION) build --output-dir $(DIST)
 	$(BLENDER_EXTENSION) validate $(DIST)/nested_dielectric-0.2.0.zip

@@ -25,8 +25,8 @@ quick = pytest.mark.quick
 
 
 def module(name: str):
-    """One of the scripts in assets/."""
-    spec = importlib.util.spec_from_file_location(name, ROOT / "assets" / f"{name}.py")
+    """One of the scripts in presets/assets."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / "presets" / "assets" / f"{name}.py")
     found = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(found)
     return found
@@ -37,7 +37,7 @@ def library(tmp_path_factory):
     """The folder of the library as ``make extension`` builds it."""
     folder = tmp_path_factory.mktemp("assets") / "nested_dielectric" / "library"
     done = subprocess.run(
-        [sys.executable, ROOT / "assets" / "library.py", folder], cwd=ROOT, capture_output=True, text=True
+        [sys.executable, ROOT / "presets" / "assets" / "library.py", folder], cwd=ROOT, capture_output=True, text=True
     )
     assert done.returncode == 0, done.stdout + done.stderr
     return folder
