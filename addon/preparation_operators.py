@@ -73,7 +73,7 @@ class ShowProblem(bpy.types.Operator):
 
     bl_idname = "nested_dielectric.show_problem"
     bl_label = "Show Problem"
-    bl_options = {"REGISTER", "UNDO"}
+    bl_options = {"UNDO", "INTERNAL"}
 
     name: bpy.props.StringProperty(name="Name", description="An object, or a material", options={"SKIP_SAVE"})
 

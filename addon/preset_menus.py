@@ -1,4 +1,4 @@
-"""Where presets are chosen: a popover with groups, pictures and a search, and the submenu of the menu Object."""
+"""Where presets are chosen: a popover with groups, pictures and a search, and menus by groups."""
 
 import textwrap
 
@@ -30,12 +30,6 @@ def draw_fit_depth(layout: bpy.types.UILayout) -> None:
     row = layout.row(align=True)
     for depth, text in ((FIT, "Fit Depth"), (MEASURED, "As Measured")):
         row.operator(FitDepth.bl_idname, text=text).depth = depth
-
-
-def draw_object_menu(self: bpy.types.Menu, context: bpy.types.Context) -> None:
-    """The extension's submenu in the menu Object, at the end that is far from Delete."""
-    self.layout.menu(ObjectMenu.bl_idname, icon="MATERIAL")
-    self.layout.separator()
 
 
 class PresetPopover(bpy.types.Panel):
@@ -101,26 +95,6 @@ def draw_problem(layout: bpy.types.UILayout, problem: str) -> None:
         lines.label(text=line, icon="BLANK1" if index else "ERROR")
 
 
-class ObjectMenu(bpy.types.Menu):
-    """What the extension does to objects and their scene"""
-
-    bl_idname = "NESTED_DIELECTRIC_MT_object"
-    bl_label = "Nested Dielectric"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.menu(PresetMenu.bl_idname, icon="MATERIAL")
-        for depth, text in ((FIT, "Fit Depth to Object"), (MEASURED, "Fit Depth as Measured")):
-            layout.operator(FitDepth.bl_idname, text=text).depth = depth
-        layout.operator(SavePreset.bl_idname, text="Save Preset...")
-        layout.separator()
-        for direction, text in (("UP", "Priority: Win over One More"), ("DOWN", "Priority: Give Way to One More")):
-            layout.operator("nested_dielectric.priority_move", text=text).direction = direction
-        layout.operator("nested_dielectric.priority_own", text="Priority: Own or Material's")
-        layout.separator()
-        layout.operator("nested_dielectric.prepare", icon="CHECKMARK")
-
-
 class PresetMenu(bpy.types.Menu):
     """Presets by groups"""
 
@@ -171,4 +145,4 @@ class NestedDielectricPresetChoice(bpy.types.PropertyGroup):
     )
 
 
-CLASSES = (NestedDielectricPresetChoice, PresetPopover, *GROUP_MENUS, PresetMenu, ObjectMenu)
+CLASSES = (NestedDielectricPresetChoice, PresetPopover, *GROUP_MENUS, PresetMenu)

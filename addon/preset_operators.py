@@ -258,7 +258,7 @@ class SavePreset(bpy.types.Operator):
 class _OwnPreset(bpy.types.Operator):
     """What operators on a preset of the user's share."""
 
-    bl_options = {"REGISTER"}
+    bl_options = {"INTERNAL"}
 
     preset: bpy.props.EnumProperty(
         name="Preset", description="A preset of your own", items=lambda self, context: own_items()

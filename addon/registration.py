@@ -18,6 +18,7 @@ from . import (
     media_rows,
     medium_panels,
     notices,
+    object_menu,
     operators,
     preferences,
     preparation_operators,
@@ -43,6 +44,7 @@ CLASSES = (
     *operators.CLASSES,
     *preset_operators.CLASSES,
     *preset_menus.CLASSES,
+    *object_menu.CLASSES,
     *add_menu.CLASSES,
     *priority_operators.CLASSES,
     *preparation_operators.CLASSES,
@@ -96,7 +98,7 @@ def register() -> None:
         undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_presets")
 
         for add, menu, entry in (
-            ("prepend", bpy.types.VIEW3D_MT_object, preset_menus.draw_object_menu),
+            ("prepend", bpy.types.VIEW3D_MT_object, object_menu.draw_entry),
             ("append", bpy.types.NODE_MT_category_shader_shader, add_menu.draw_entry),
         ):
             getattr(menu, add)(entry)

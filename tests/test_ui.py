@@ -12,7 +12,7 @@ from nested_dielectric import (
     node_group,
     operators,
     preparation_operators,
-    preset_menus,
+    object_menu,
     preset_operators,
     registration,
     scene_panels,
@@ -30,7 +30,7 @@ def priorities():
 def in_blender():
     """What the extension has put into Blender."""
     classes = {cls for cls in registration.CLASSES if cls.is_registered}
-    menus = bpy.types.VIEW3D_MT_object._dyn_ui_initialize().count(preset_menus.draw_object_menu)
+    menus = bpy.types.VIEW3D_MT_object._dyn_ui_initialize().count(object_menu.draw_entry)
     handlers = bpy.app.handlers.render_init[:].count(registration.warn_before_render)
     pictures = len(bpy.utils.previews._uuid_open)
     properties = [
