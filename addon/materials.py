@@ -26,7 +26,7 @@ from .parameters import (
 )
 from .preset_library import load_preset
 from .presets import Preset
-from .spectra import SpectrumError, spectral_table
+from .spectra import SpectrumError, converted, spectral_table
 from .trees import complete_nodes, dielectric_places, shows_dielectric, shows_other_volume, value_socket
 from .working_space import working_gamut
 
@@ -41,7 +41,7 @@ KEY_PROPERTY = "nd_preset_key"
 """Custom property of materials that presets made: the preset's key."""
 
 DEPTH = BY_KEYWORD["transmittance_depth"]
-
+TRANSMITTANCE = BY_KEYWORD["transmittance"]
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 """Of linear red, green and blue (ITU-R BT.709)."""
@@ -91,7 +91,7 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
     :raises ParameterError: for an unknown preset or keyword, or a value outside its limits. Nothing has been made then.
     """
     loaded = None if preset is None else load_preset(preset)
-    values = {} if loaded is None else check_keywords(loaded.parameters) | {DEPTH: measured_depth(loaded)}
+    values = {} if loaded is None else _preset_values(loaded) | {DEPTH: measured_depth(loaded)}
     values.update(check_keywords(keywords))
     if keywords.keys() & {"sellmeier_b", "sellmeier_c"} and "ior" not in keywords:
         values[BY_KEYWORD["ior"]] = _sellmeier_index(values)
@@ -121,6 +121,25 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
         material[PRESET_PROPERTY] = f"{loaded.description} {loaded.source}"
         material[KEY_PROPERTY] = loaded.key
     return material
+
+
+def _preset_values(preset: Preset) -> dict[Parameter, Any]:
+    """A preset's checked values, its colour in the file's working space."""
+    values = check_keywords(preset.parameters)
+    if preset.has_colour:
+        values[TRANSMITTANCE] = TRANSMITTANCE.bounded(working_colour(values[TRANSMITTANCE]))
+    return values
+
+
+def working_colour(rgb: tuple[float, ...], to_presets: bool = False) -> tuple[float, ...]:
+    """Convert a colour of preset files, which is in linear Rec.709, to the open file's working space, or back. In a working
+    space of nobody's knowledge it stays as it is.
+    """
+    try:
+        gamuts = ("REC709", working_gamut())
+        return converted(rgb, *(gamuts[::-1] if to_presets else gamuts))
+    except SpectrumError:
+        return rgb
 
 
 def measured_depth(preset: Preset) -> float:
@@ -361,7 +380,7 @@ def is_preset(material: bpy.types.Material, preset: Preset) -> bool:
     node = dielectric_node(material)
     if node is None or material.library is not None or len(material.node_tree.nodes) > 3:
         return False
-    values = check_keywords(preset.parameters)
+    values = _preset_values(preset)
     settings = {parameter.keyword: _plain(values.get(parameter, parameter.default)) for parameter in SETTINGS}
     return (
         not any(socket.is_linked for socket in node.inputs)

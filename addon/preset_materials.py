@@ -13,6 +13,7 @@ from .animation import is_animated
 from .materials import (
     DEPTH,
     KEY_PROPERTY,
+    TRANSMITTANCE,
     dielectric_node,
     get_parameter,
     is_preset,
@@ -21,6 +22,7 @@ from .materials import (
     parameter_socket,
     rendered_node,
     usable_spectrum_settings,
+    working_colour,
 )
 from .parameters import SETTINGS, SOCKETS, ParameterError
 from .preset_library import load_preset
@@ -103,7 +105,9 @@ def preset_from(material: bpy.types.Material, name: str, group: str, tags: Itera
     for parameter in SOCKETS:
         if parameter.kind != "SHADER":
             value = _written(get_parameter(node, parameter))
-            if parameter == DEPTH:
+            if parameter == TRANSMITTANCE:
+                value = _written(TRANSMITTANCE.bounded(working_colour(value, to_presets=True)))
+            elif parameter == DEPTH:
                 value = _written(value * bpy.context.scene.unit_settings.scale_length)
             if parameter.keyword == "ior" or value != _written(parameter.default):
                 values[parameter.keyword] = value

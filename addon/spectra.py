@@ -18,6 +18,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache, lru_cache
 from itertools import pairwise
@@ -395,6 +396,18 @@ def _gamut(keyword: str) -> tuple[np.ndarray, np.ndarray]:
     colour = _colour()
     space = colour.RGB_COLOURSPACES[_COLOURSPACES[keyword]]
     return colour.xy_to_XYZ(space.whitepoint), colour.normalised_primary_matrix(space.primaries, space.whitepoint)
+
+
+def converted(rgb: Sequence[float], source: str, target: str) -> tuple[float, float, float]:
+    """Convert a scene-linear colour from one gamut to another, white to white (Bradford's adaptation).
+
+    :raises SpectrumError: without colour-science, if they differ.
+    """
+    if source == target:
+        return tuple(rgb)
+    (white, to_xyz), (other_white, other_to_xyz) = _gamut(source), _gamut(target)
+    adaptation = _colour().adaptation.matrix_chromatic_adaptation_VonKries(white, other_white, transform="Bradford")
+    return tuple((np.linalg.inv(other_to_xyz) @ adaptation @ to_xyz @ np.array(rgb)).tolist())
 
 
 @lru_cache(maxsize=64)

@@ -7,7 +7,7 @@ import pytest
 from mathutils import Matrix
 
 import nested_dielectric as nd
-from nested_dielectric import meshes, preset_materials, shapes
+from nested_dielectric import materials, meshes, preset_materials, presets, shapes
 from nested_dielectric.materials import KEY_PROPERTY, measured_depth
 from nested_dielectric.parameters import ParameterError
 from nested_dielectric.presets import Preset
@@ -200,3 +200,19 @@ def test_a_material_knows_its_preset_and_one_of_an_older_version_does_not():
     del material[KEY_PROPERTY]
     assert preset_materials.preset_of(material) is None
     assert preset_materials.preset_of(None) is None
+
+
+def test_a_preset_has_its_colour_in_every_working_space():
+    """Blender's own conversion of colours, which an artist's colours take when the working space of a file is changed."""
+    new_scene()
+    wine = nd.new_material("Wine", preset="wine_rose")
+    bpy.ops.wm.set_working_color_space(convert_colors=True, working_space="ACEScg")
+    there = nd.new_material("There", preset="wine_rose")
+    colours = [materials.dielectric_node(each).inputs["Transmittance"].default_value[:3] for each in (wine, there)]
+    # Blender adapts the white as Bradford does, to a few digits.
+    assert colours[1] == pytest.approx(colours[0], abs=2e-3)
+    assert colours[1] != pytest.approx(presets.load_preset("wine_rose").parameters["transmittance"], abs=0.02)
+    assert materials.is_preset(there, presets.load_preset("wine_rose"))
+    kept = preset_materials.preset_from(there, "Mine", "Drinks", (), "")
+    expected = presets.load_preset("wine_rose").parameters["transmittance"]
+    assert kept.parameters["transmittance"] == pytest.approx(expected, abs=1e-5)
