@@ -96,6 +96,9 @@ SHADING_NODES = frozenset(
 )
 """Geometry Nodes that leave all points and faces where they are: those of *Smooth by Angle*, which *Shade Auto Smooth* adds."""
 
+PASSING_NODES = frozenset(("GeometryNodeSetShadeSmooth", "NodeGroupOutput"))
+"""Those of them that a mesh goes through."""
+
 ABSORPTION_VALUES = ("Transmittance", "Transmittance Depth")
 NOTHING_ABSORBED = (0.0, 0.0, 0.0)
 
@@ -833,7 +836,9 @@ def keeps_mesh(modifier: bpy.types.Modifier) -> bool:
     tree = modifier.node_group if modifier.type == "NODES" else None
     if tree is None or is_offset(modifier):
         return tree is not None
-    return tree.animation_data is None and all(node.bl_idname in SHADING_NODES for node in tree.nodes)
+    passed_on = [node.inputs[0].is_linked for node in tree.nodes if node.bl_idname in PASSING_NODES]
+    shades = bool(passed_on) and all(passed_on) and all(node.bl_idname in SHADING_NODES for node in tree.nodes)
+    return shades and tree.animation_data is None
 
 
 def is_offset(modifier: bpy.types.Modifier) -> bool:

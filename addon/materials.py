@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
 from typing import Any
@@ -116,11 +116,18 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
         set_parameter(node, parameter, value)
     _set_table(material, node, settings, table)
     material.use_transparent_shadow = True
-    material.diffuse_color = (*node.inputs["Transmittance"].default_value[:3], 0.3)
+    material.diffuse_color = viewport_colour(node.inputs["Transmittance"].default_value[:3])
     if loaded is not None:
         material[PRESET_PROPERTY] = f"{loaded.description} {loaded.source}"
         material[KEY_PROPERTY] = loaded.key
     return material
+
+
+def viewport_colour(transmittance: Sequence[float]) -> tuple[float, float, float, float]:
+    """Return the colour and alpha of a medium in Solid view: the brighter and the denser the deeper its colour is."""
+    brightest, darkest = max(transmittance), min(transmittance)
+    gain = max(1.0, 0.5 / brightest) if brightest > 0.0 else 1.0
+    return *(gain * channel for channel in transmittance), 0.3 + 0.4 * (1.0 - darkest)
 
 
 def _preset_values(preset: Preset) -> dict[Parameter, Any]:

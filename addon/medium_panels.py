@@ -106,7 +106,6 @@ class _MediumPanel(_OfMedium):
 class _AdvancedPanel(_OfMedium):
     """The heading of all else."""
 
-    bl_label = "Advanced"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -122,24 +121,45 @@ class _HeadingPanel(_OfMedium):
         draw_advanced(self.layout, context, active_medium(context), self.bl_label)
 
 
-def _panels(place: type, name: str) -> list[type[bpy.types.Panel]]:
-    """The panels of a medium in one place of Blender's window."""
+def draw_in_material_properties(self: bpy.types.Panel, context: bpy.types.Context) -> None:
+    """What artists change first, below the material's slots."""
+    material = active_medium(context)
+    if material is not None:
+        draw_basics(self.layout.box(), context, material)
 
-    def panel(kind: type, label: str, parent: type[bpy.types.Panel] | None = None) -> type[bpy.types.Panel]:
-        word = "".join(letter for letter in label.lower() if letter.isalpha())
-        fields = {"bl_idname": f"NESTED_DIELECTRIC_PT_{name}_{word}", "bl_label": label, "__doc__": kind.__doc__}
-        if parent is not None:
-            fields["bl_parent_id"] = parent.bl_idname
-        return type(fields["bl_idname"], (kind, place, bpy.types.Panel), fields)
 
-    medium = panel(_MediumPanel, "Medium")
-    advanced = panel(_AdvancedPanel, "Advanced", medium)
-    found = [medium, advanced]
+PLACES = tuple((f"{engine}_context_material", draw_in_material_properties) for engine in ("CYCLES_PT", "EEVEE_MATERIAL_PT"))
+"""Blender's panels, and what is added to them."""
+
+
+def _panel(
+    place: type, name: str, kind: type, label: str, parent: type[bpy.types.Panel] | None = None
+) -> type[bpy.types.Panel]:
+    word = "".join(letter for letter in label.lower() if letter.isalpha())
+    fields = {"bl_idname": f"NESTED_DIELECTRIC_PT_{name}_{word}", "bl_label": label, "__doc__": kind.__doc__}
+    if parent is not None:
+        fields["bl_parent_id"] = parent.bl_idname
+    return type(fields["bl_idname"], (kind, place, bpy.types.Panel), fields)
+
+
+def _headings(place: type, name: str, parent: type[bpy.types.Panel]) -> list[type[bpy.types.Panel]]:
+    """The panels of all parameters but the first, in one place of Blender's window."""
+    found = []
     for heading in HEADINGS:
-        found.append(panel(_HeadingPanel, heading, advanced))
+        found.append(_panel(place, name, _HeadingPanel, heading, parent))
         if heading == DISPERSION_PANEL:
-            found.append(panel(_HeadingPanel, SPECTRUM_PANEL, found[-1]))
+            found.append(_panel(place, name, _HeadingPanel, SPECTRUM_PANEL, found[-1]))
     return found
 
 
-CLASSES = (*_panels(Sidebar, "sidebar"), *_panels(_MaterialProperties, "material"))
+_MEDIUM = _panel(Sidebar, "sidebar", _MediumPanel, "Medium")
+_ADVANCED = _panel(Sidebar, "sidebar", _AdvancedPanel, "Advanced", _MEDIUM)
+_REST = _panel(_MaterialProperties, "material", _AdvancedPanel, "Nested Dielectric")
+
+CLASSES = (
+    _MEDIUM,
+    _ADVANCED,
+    *_headings(Sidebar, "sidebar", _ADVANCED),
+    _REST,
+    *_headings(_MaterialProperties, "material", _REST),
+)

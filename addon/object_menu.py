@@ -40,7 +40,7 @@ class ObjectMenu(bpy.types.Menu):
         layout.operator(SpaceOut.bl_idname)
         layout.operator(SelectObjects.bl_idname, text="Select Objects of Medium")
         layout.separator()
-        layout.operator(Prepare.bl_idname, icon="CHECKMARK")
+        layout.operator(Prepare.bl_idname)
         layout.operator(PutBack.bl_idname, text="Put Back what Prepare Changed")
         layout.operator(ClearAnalysis.bl_idname)
         layout.operator(UpdateMaterials.bl_idname)

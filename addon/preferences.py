@@ -58,7 +58,7 @@ class Preferences(bpy.types.AddonPreferences):
         column.prop(self, "depth")
         column = layout.column()
         column.prop(self, "preset_folder", placeholder=str(user_folder()))
-        row = column.row(heading="Library")
+        row = column.row(heading="Media to Drag")
         row.enabled = asset_library.is_there()
         row.prop(self, "asset_library")
         row = layout.row()

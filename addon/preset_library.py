@@ -45,14 +45,14 @@ class Catalogue:
         return {group: members for group, members in found.items() if members}
 
     def search(self, words: str) -> list[Preset]:
-        """Return the presets in whose name, tags, group or description all of the words stand."""
+        """Return the presets in whose name, tags, group or description all of the words stand, first those in whose name."""
         wanted = words.casefold().split()
         found = []
         for preset in sorted(self.presets.values(), key=lambda preset: preset.name.casefold()):
             text = " ".join((preset.name, *preset.tags, preset.group, preset.description)).casefold()
             if all(word in text for word in wanted):
                 found.append(preset)
-        return found
+        return sorted(found, key=lambda preset: not all(word in preset.name.casefold() for word in wanted))
 
 
 def user_folder() -> Path:

@@ -59,6 +59,7 @@ class PresetPopover(bpy.types.Panel):
         else:
             draw_found(column, found, shown.get(state.group, []))
         layout.separator(type="LINE")
+        layout.label(text="Click a name to make the selected objects of it", icon="INFO")
         layout.operator(SavePreset.bl_idname, text="Save Active Medium as Preset...", icon="FILE_TICK")
         for problem in found.problems:
             draw_problem(layout, problem)

@@ -53,7 +53,7 @@ def picture(preset: Preset) -> int:
     if preset.key not in catalogue().own and path.is_file():
         name = preset.key
         if name not in _pictures:
-            _pictures.load(name, str(path), "IMAGE")
+            _pictures.load(name, str(path), "IMAGE").icon_size[:]  # read at once: menus do not wait for it
         return _pictures[name].icon_id
     colour = tuple(preset.parameters.get("transmittance", (1.0, 1.0, 1.0)))
     name = f"colour {colour}"

@@ -11,6 +11,7 @@ from . import (
     add_menu,
     asset_library,
     dispersion_panels,
+    dropped,
     icons,
     lamp_panel,
     live,
@@ -87,7 +88,7 @@ def register() -> None:
         undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_places")
         undo.callback(media_rows.forget_wanted)
 
-        for name, draw in notices.PLACES:
+        for name, draw in (*notices.PLACES, *medium_panels.PLACES):
             place = getattr(bpy.types, name)
             place.append(draw)
             undo.callback(place.remove, draw)
@@ -111,10 +112,13 @@ def register() -> None:
             (bpy.app.handlers.render_init, warn_before_render),
             (bpy.app.handlers.load_post, mend_materials),
             (bpy.app.handlers.blend_import_post, mend_materials),
+            (bpy.app.handlers.blend_import_post, dropped.note_appended),
             *((handlers, media_list.forget_media) for handlers in _CHANGES),
         ):
             handlers.append(handler)
             undo.callback(handlers.remove, handler)
+
+        undo.callback(dropped.forget_appended)
 
         live.install()
         undo.callback(live.remove)

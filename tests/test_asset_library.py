@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import nested_dielectric as nd
-from nested_dielectric import asset_library, node_group, preferences
+from nested_dielectric import asset_library, dropped, materials, node_group, preferences, shapes
 from nested_dielectric.materials import KEY_PROPERTY, is_preset
 from nested_dielectric.preset_pictures import picture_path
 from nested_dielectric.presets import GROUPS, load_preset, preset_names
@@ -219,3 +219,36 @@ def test_a_brilliant_is_a_closed_body_of_58_facets_and_a_girdle():
     mesh = sys.modules["preview_scenes"].brilliant()
     girdle = [face for face in mesh.polygons if abs(face.normal.z) < 1e-3]
     assert len(mesh.polygons) - len(girdle) == 57  # without a culet
+
+
+@quick
+def test_a_medium_that_is_dragged_onto_an_object_has_its_colour_at_that_objects_thickness(library, registered):
+    """Without a window Blender runs no timers: the test calls what the timer would."""
+    file = next(library.glob("*.blend"))
+
+    def drop(name, obj):
+        bpy.ops.wm.append(directory=f"{file}/Material/", filename=name)
+        assert dropped._appended and bpy.app.timers.is_registered(dropped.fit_appended)
+        obj.data.materials.append(bpy.data.materials[name])
+        dropped.fit_appended()
+        return materials.dielectric_node(bpy.data.materials[name]).inputs["Transmittance Depth"].default_value
+
+    bpy.ops.mesh.primitive_cube_add(size=3.0)
+    assert drop("Whisky", bpy.context.object) == pytest.approx(shapes.thickness(bpy.context.object)) == pytest.approx(2.0)
+    assert drop("Water", bpy.context.object) == 1.0  # clear
+    bpy.ops.wm.append(directory=f"{file}/Material/", filename="Red Wine")
+    dropped.fit_appended()  # nobody has it
+    wine = materials.dielectric_node(bpy.data.materials["Red Wine"])
+    assert wine.inputs["Transmittance Depth"].default_value == pytest.approx(0.07)
+
+
+@quick
+def test_what_an_artists_own_objects_bring_keeps_its_depth(tmp_path, registered):
+    bpy.ops.mesh.primitive_cube_add(size=3.0)
+    bpy.context.object.name = "Brought"
+    nd.assign(bpy.context.object, nd.new_material("Own", preset="whisky"))
+    file = tmp_path / "own.blend"
+    bpy.data.libraries.write(str(file), {bpy.context.object})
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.append(directory=f"{file}/Object/", filename="Brought")
+    assert not dropped._appended

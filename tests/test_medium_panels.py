@@ -1,5 +1,7 @@
 """The panels of a medium: its parameters, its dispersion and its spectrum."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
@@ -241,8 +243,9 @@ def test_panel_and_node_show_first_what_artists_change_first(draw):
     _, node = add_dispersive()
     first = [BY_KEYWORD[keyword] for keyword in ("transmittance", "transmittance_depth", "ior", "roughness", "priority")]
     assert [socket.name for socket in node.inputs][:5] == [parameter.name for parameter in first]
-    for place in ("sidebar", "material"):
-        _, properties, _ = texts(draw(PANELS[f"{place}_medium"]))
+    below_slots = SimpleNamespace(bl_label="", draw=medium_panels.draw_in_material_properties)
+    for panel in (PANELS["sidebar_medium"], below_slots):
+        _, properties, _ = texts(draw(panel))
         assert list(properties) == ["Colour", "Depth", "IOR", "Roughness", "Priority"]
 
 

@@ -114,9 +114,9 @@ def red_wine() -> bpy.types.Scene:
     world = scene.world.node_tree
     background = next(node for node in world.nodes if node.type == "BACKGROUND")
     world.links.new(world.nodes.new("ShaderNodeTexSky").outputs["Color"], background.inputs["Color"])
-    background.inputs["Strength"].default_value = 0.06
+    background.inputs["Strength"].default_value = 0.12
     scene.render.resolution_percentage = 34
-    scene.cycles.samples = 48
+    scene.cycles.samples = 64
     return scene
 
 
