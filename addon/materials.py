@@ -127,7 +127,7 @@ def viewport_colour(transmittance: Sequence[float]) -> tuple[float, float, float
     """Return the colour and alpha of a medium in Solid view: the brighter and the denser the deeper its colour is."""
     brightest, darkest = max(transmittance), min(transmittance)
     gain = max(1.0, 0.5 / brightest) if brightest > 0.0 else 1.0
-    return *(gain * channel for channel in transmittance), 0.3 + 0.4 * (1.0 - darkest)
+    return *(gain * channel for channel in transmittance), 0.3 + 0.6 * (1.0 - darkest)
 
 
 def _preset_values(preset: Preset) -> dict[Parameter, Any]:
