@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import bpy
 
-from .compatibility import UnsupportedError, blender_problem
+from .compatibility import UnsupportedError
 from .materials import add_node
 from .parameters import GROUP_NAME
+from .polls import supported
 
 
 def edited_material(space: bpy.types.Space | None) -> bpy.types.Material | None:
@@ -31,10 +32,7 @@ class AddNode(bpy.types.Operator):
         if not context.space_data.edit_tree.is_editable:
             cls.poll_message_set(f"Material {material.name!r} belongs to a library; make it local first")
             return False
-        problem = blender_problem()
-        if problem:
-            cls.poll_message_set(problem)
-        return not problem
+        return supported(cls)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         context.space_data.cursor_location_from_region(event.mouse_region_x, event.mouse_region_y)

@@ -5,10 +5,10 @@ from math import isnan
 
 import bpy
 
-from . import lights, media
+from . import lights
 from .caustics import set_shadow_caustics
 from .choice import Choice
-from .compatibility import UnsupportedError, blender_problem
+from .compatibility import UnsupportedError
 from .dispersion import LINE_D, sellmeier_ior
 from .materials import (
     dielectric_node,
@@ -19,9 +19,9 @@ from .materials import (
     set_spectrum,
     usable_spectrum_settings,
 )
-from .media_list import listed_media
 from .parameters import BY_KEYWORD, DISPERSION_MODELS, ParameterError, check_keywords
 from .passes import add_passes
+from .polls import has_media, supported
 from .spectra import DISTRIBUTIONS, GAMUTS, SpectrumError, illuminant_names
 from .versions import outdated_materials, update_materials
 
@@ -89,14 +89,6 @@ def coefficients_ior(node: bpy.types.ShaderNodeGroup) -> float:
     """Index that a material's Sellmeier coefficients have at the d line, whatever its IOR; NaN if they have none."""
     b, c = (get_parameter(node, BY_KEYWORD[keyword]) for keyword in ("sellmeier_b", "sellmeier_c"))
     return sellmeier_ior(b, c, LINE_D)
-
-
-def _supported(cls: type[bpy.types.Operator]) -> bool:
-    """Grey an operator out, with the reason, in a Blender that cannot render nested dielectrics."""
-    problem = blender_problem()
-    if problem:
-        cls.poll_message_set(problem)
-    return not problem
 
 
 class _MaterialOperator(bpy.types.Operator):
@@ -276,7 +268,7 @@ class UpdateMaterials(bpy.types.Operator):
         if not outdated_materials():
             cls.poll_message_set("All materials are of this version")
             return False
-        return _supported(cls)
+        return supported(cls)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
@@ -308,7 +300,7 @@ class LampCarrier(bpy.types.Operator):
         if not any(obj.type == "LIGHT" for obj in context.scene.objects):
             cls.poll_message_set("The scene has no lamp; add one first")
             return False
-        return _supported(cls)
+        return supported(cls)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         everything = lights.lamps(context.scene)
@@ -343,10 +335,7 @@ class _SceneOperator(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not listed_media(context.scene).rows:
-            cls.poll_message_set("The scene has no medium; assign a preset first")
-            return False
-        return _supported(cls)
+        return has_media(cls, context) and supported(cls)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         for change in self.change(context.scene) or ("Nothing to change",):

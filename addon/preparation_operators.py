@@ -5,8 +5,9 @@ from __future__ import annotations
 import bpy
 
 from .analysis import clear_analysis, is_analysed
-from .compatibility import UnsupportedError, blender_problem
+from .compatibility import UnsupportedError
 from .media import all_objects
+from .polls import supported
 from .preparation import prepare, put_back
 from .report import last_report
 from .selecting import frame_selected, instancers, select_only
@@ -24,10 +25,7 @@ class Prepare(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        problem = blender_problem()
-        if problem:
-            cls.poll_message_set(problem)
-        return not problem
+        return supported(cls)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:

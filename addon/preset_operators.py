@@ -3,11 +3,11 @@
 import bpy
 
 from . import media
-from .compatibility import blender_problem
 from .files import WriteError
 from .materials import measured_depth
 from .operators import active_medium
 from .parameters import ParameterError
+from .polls import supported
 from .preferences import DEPTHS, EDITED, FIT, MATERIALS, MEASURED, preference
 from .preset_library import (
     USER_GROUP,
@@ -67,10 +67,7 @@ class AssignPreset(bpy.types.Operator):
         if not targets(context):
             cls.poll_message_set("Select a mesh, curve, surface, text or metaball")
             return False
-        problem = blender_problem()
-        if problem:
-            cls.poll_message_set(problem)
-        return not problem
+        return supported(cls)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         for name in ("material", "depth"):

@@ -8,6 +8,7 @@ from . import media, priorities
 from .media_list import listed_media, open_or_close
 from .media_rows import active_line
 from .parameters import ParameterError
+from .polls import has_media
 from .selecting import select_only
 
 
@@ -18,10 +19,7 @@ class _MediaOperator(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        if not listed_media(context.scene).rows:
-            cls.poll_message_set("The scene has no medium; assign a preset first")
-            return False
-        return True
+        return has_media(cls, context)
 
     def medium(self, context: bpy.types.Context, name: str) -> bpy.types.Object:
         """An object of the scene by its name, or the active one. Raises :class:`ParameterError` if it is no medium."""

@@ -6,7 +6,7 @@ import bpy
 import pytest
 
 import nested_dielectric as nd
-from nested_dielectric import add_menu, materials
+from nested_dielectric import materials, polls
 from ui import add_cube
 
 pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("registered")]
@@ -87,6 +87,6 @@ def test_a_node_is_added_by_undoable_steps_where_there_is_a_material(monkeypatch
         assert bpy.ops.nested_dielectric.add_node("EXEC_DEFAULT", True) == {"FINISHED"}
     bpy.ops.ed.undo()
     assert "Nested Dielectric" not in bpy.data.materials["Mine"].node_tree.nodes
-    monkeypatch.setattr(add_menu, "blender_problem", lambda: "this Blender has no OSL")
+    monkeypatch.setattr(polls, "blender_problem", lambda: "this Blender has no OSL")
     with shader_editor(bpy.data.materials["Mine"].node_tree), pytest.raises(RuntimeError, match="no OSL"):
         bpy.ops.nested_dielectric.add_node()

@@ -19,7 +19,7 @@ from nested_dielectric import cli, files
 from nested_dielectric.files import WriteError, replacing, replacing_in
 from nested_dielectric.output import check_picture, save_blend
 from nested_dielectric.passes import file_outputs
-from nested_dielectric.rendering import FILE_FORMATS, RenderError, render_frame
+from nested_dielectric.rendering import RenderError, render_frame
 from scenes import add_camera, add_sphere, mostly_again, new_scene, oiio, read_picture, set_striped_world
 
 OLD = b"what was there before"

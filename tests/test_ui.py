@@ -11,10 +11,9 @@ from nested_dielectric import (
     media,
     medium_panels,
     node_group,
-    operators,
-    preparation_operators,
     object_menu,
-    preset_operators,
+    operators,
+    polls,
     registration,
     scene_panels,
 )
@@ -99,8 +98,7 @@ def test_presets_are_greyed_out_where_nothing_can_be_a_medium():
 
 def test_operators_are_greyed_out_in_a_blender_that_cannot_render_media(monkeypatch):
     add_cube("A")
-    for module in (operators, preparation_operators, preset_operators):
-        monkeypatch.setattr(module, "blender_problem", lambda: "this Blender cannot")
+    monkeypatch.setattr(polls, "blender_problem", lambda: "this Blender cannot")
     assert not bpy.ops.nested_dielectric.assign_preset.poll()
     assert not bpy.ops.nested_dielectric.prepare.poll()
 
@@ -260,7 +258,7 @@ def test_buttons_for_lamps_and_passes_are_greyed_out_where_there_is_nothing_for_
     add_lamp("Lamp")
     with pytest.raises(RuntimeError, match="Passes need Cycles; prepare the scene first"):
         bpy.ops.nested_dielectric.add_passes()
-    monkeypatch.setattr(operators, "blender_problem", lambda: "this Blender cannot")
+    monkeypatch.setattr(polls, "blender_problem", lambda: "this Blender cannot")
     for name in ("lamp_carrier", "shadow_caustics", "add_passes"):
         with pytest.raises(RuntimeError, match="this Blender cannot"):
             getattr(bpy.ops.nested_dielectric, name)()
