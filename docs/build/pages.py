@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import groupby
 from pathlib import Path
 
 from nested_dielectric import spectra
 from nested_dielectric.parameters import PARAMETERS, Parameter
-from nested_dielectric.presets import GROUPS, Preset, load_preset, preset_names
+from nested_dielectric.presets import Preset, all_presets
 
 FOLDER = Path(__file__).resolve().parent.parent
 
@@ -93,13 +94,11 @@ def _choices(members: list[Parameter]) -> list[str]:
 def presets_page() -> str:
     """Return the page of all presets by groups, and the sources of their numbers."""
     parts = [PRESETS_INTRODUCTION]
-    presets = sorted(map(load_preset, preset_names()), key=lambda preset: preset.name)
-    for group in GROUPS:
-        members = [preset for preset in presets if preset.group == group]
-        if members:
-            head = ("Preset", "In Python", "IOR", "Colour at depth", "Priority", "What it is")
-            sources = "".join(f"- **{preset.name}**: {preset.source}\n" for preset in members)
-            parts += [f"## {group}\n", _table([head, *map(_preset_row, members)]), f"Sources:\n\n{sources}"]
+    for group, presets in groupby(all_presets(), key=lambda preset: preset.group):
+        members = list(presets)
+        head = ("Preset", "In Python", "IOR", "Colour at depth", "Priority", "What it is")
+        sources = "".join(f"- **{preset.name}**: {preset.source}\n" for preset in members)
+        parts += [f"## {group}\n", _table([head, *map(_preset_row, members)]), f"Sources:\n\n{sources}"]
     return "\n".join(parts)
 
 

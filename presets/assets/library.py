@@ -17,7 +17,7 @@ import numpy as np
 import nested_dielectric as nd
 from nested_dielectric.files import replacing
 from nested_dielectric.preset_pictures import picture_path
-from nested_dielectric.presets import GROUPS, Preset, load_preset, preset_names
+from nested_dielectric.presets import GROUPS, Preset, all_presets
 
 bpy.utils.expose_bundled_modules()
 import OpenImageIO as oiio  # noqa: E402  Blender's own copy
@@ -75,7 +75,7 @@ def set_preview(material: bpy.types.Material, picture: np.ndarray) -> None:
 def build(folder: Path) -> Path:
     """Write the library into a folder and return its file."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    materials = {add_asset(load_preset(key)) for key in preset_names()}
+    materials = {add_asset(preset) for preset in all_presets()}
     text = bpy.data.texts.new("Licence")
     text.write(f"These materials are in the public domain: {LICENCE}, {LICENCE_PAGE}\n")
     path = folder / FILE_NAME
@@ -90,7 +90,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", type=Path, nargs="?", default=Path("library"), help="where to (default: library)")
     path = build(parser.parse_args().folder)
-    print(f"wrote {len(preset_names())} media, {os.path.getsize(path) / 1e6:.1f} MB: {path}")
+    print(f"wrote {len(all_presets())} media, {os.path.getsize(path) / 1e6:.1f} MB: {path}")
     return 0
 
 
