@@ -12,20 +12,28 @@ from .preferences import FIT, preference
 from .preset_materials import fit_depth, preset_of
 from .shapes import thickness
 
+_before: set[int] = set()
+"""What the file held before an append, by the session's numbers."""
+
 _appended: set[int] = set()
 """Materials by their session's numbers, until :func:`fit_appended` has looked at them."""
 
 
 @bpy.app.handlers.persistent
-def note_appended(imported: bpy.types.BlendImportContext, *_: object) -> None:
+def note_before(*_: object) -> None:
+    """Note what the file holds before an append: what an append lists may be gone when other handlers have seen it."""
+    _before.clear()
+    _before.update(each.session_uid for each in (*bpy.data.materials, *bpy.data.objects))
+
+
+@bpy.app.handlers.persistent
+def note_appended(*_: object) -> None:
     """Look at materials that were appended alone once Blender has given them away: what comes with objects is as its file has
     it.
     """
-    items = [item.id for item in imported.import_items]
-    if any(isinstance(item, bpy.types.Object) for item in items) or preference("depth") != FIT:
+    if any(obj.session_uid not in _before for obj in bpy.data.objects) or preference("depth") != FIT:
         return
-    found = [item for item in items if isinstance(item, bpy.types.Material) and item.is_editable]
-    _appended.update(item.session_uid for item in found)
+    _appended.update(each.session_uid for each in bpy.data.materials if each.session_uid not in _before and each.is_editable)
     if _appended and not bpy.app.timers.is_registered(fit_appended):
         bpy.app.timers.register(fit_appended)
 

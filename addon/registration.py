@@ -112,6 +112,7 @@ def register() -> None:
             (bpy.app.handlers.render_init, warn_before_render),
             (bpy.app.handlers.load_post, mend_materials),
             (bpy.app.handlers.blend_import_post, mend_materials),
+            (bpy.app.handlers.blend_import_pre, dropped.note_before),
             (bpy.app.handlers.blend_import_post, dropped.note_appended),
             *((handlers, media_list.forget_media) for handlers in _CHANGES),
         ):
