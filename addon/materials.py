@@ -403,7 +403,7 @@ def _holds(node: bpy.types.ShaderNodeGroup, parameter: Parameter, value: Any) ->
     found = get_parameter(node, parameter)
     if isinstance(found, str):
         return found == _plain(value)
-    return np.array_equal(np.float32(found), np.float32(value))
+    return np.allclose(found, value, rtol=1e-5, atol=1e-9)
 
 
 def _plain(value: Any) -> Any:

@@ -105,7 +105,7 @@ def preset_from(material: bpy.types.Material, name: str, group: str, tags: Itera
     for parameter in SOCKETS:
         if parameter.kind != "SHADER":
             value = _written(get_parameter(node, parameter))
-            if parameter == TRANSMITTANCE:
+            if parameter == TRANSMITTANCE and value != _written(parameter.default):
                 value = _written(TRANSMITTANCE.bounded(working_colour(value, to_presets=True)))
             elif parameter == DEPTH:
                 value = _written(value * bpy.context.scene.unit_settings.scale_length)

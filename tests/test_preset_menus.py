@@ -185,12 +185,15 @@ def test_a_saved_medium_comes_back_as_it_was(ball, folder):
     assert nd.preset_names() == tuple(sorted(nd.preset_names())) and "blue_glass_é" in nd.preset_names()
 
 
-def test_every_preset_survives_being_saved(ball, folder):
+@pytest.mark.parametrize("space", ["Linear Rec.709", "ACEScg"])
+def test_every_preset_survives_being_saved(ball, folder, space):
+    bpy.ops.wm.set_working_color_space(convert_colors=False, working_space=space)
     for key in presets.preset_names():
         material = nd.new_material("Any", preset=key)
         saved = preset_materials.preset_from(material, f"My {key}", "Glass", (), "")
         presets.save_preset(saved, folder)
         assert materials.is_preset(material, presets.load_preset(saved.key, folder)), key
+    bpy.ops.wm.set_working_color_space(convert_colors=False, working_space="Linear Rec.709")
 
 
 @pytest.mark.parametrize(
