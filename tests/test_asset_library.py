@@ -43,14 +43,6 @@ def library(tmp_path_factory):
     return folder
 
 
-@pytest.fixture
-def registered():
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    nd.register()
-    yield
-    nd.unregister()
-
-
 def append(library: Path, *names: str) -> list[bpy.types.Material]:
     """Append materials one after the other, as dropping them does."""
     for name in names:
