@@ -18,7 +18,7 @@ import numpy as np
 from mathutils import Euler, Matrix, Vector
 
 from nested_dielectric import iced_water
-from nested_dielectric.analysis import triangles_of
+from nested_dielectric.shapes import triangles_of
 
 AIR, WATER, ICE, GLASS = 1.0, 1.33, 1.31, 1.52
 WINE = 1.345
