@@ -28,7 +28,7 @@ from .foreign import is_clear, is_seen_by_all, lamp_box, sends_light_on
 from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
 from .materials import absorption_coefficients, dielectric_node, has_own_volume, unchanged_nodes
-from .media import SOLID_TYPES, material_priority, media, own_priority
+from .media import SOLID_TYPES, is_cut_surface, is_rendered, material_priority, media, own_priority
 from .node_group import (
     AIR_AROUND,
     ANALYSED,
@@ -536,14 +536,15 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
         _Row(obj, EVERYWHERE)
         for obj in hidden
         if obj.type in SHAPED
-        and not obj.hide_render
+        and is_rendered(obj)
+        and not is_cut_surface(obj)
         and not any(slot.material in facts for slot in obj.material_slots)
     ]
     known = {row.obj.session_uid: index for index, row in enumerate(rows)} if plain else {}
     doubts = dict(_scene_doubts(scene, facts))
     seen = {row.obj for row in rows}
     doubts.update(
-        (obj.name, "is hidden in the viewport alone") for obj in media(scene) if obj not in seen and not obj.hide_render
+        (obj.name, "is hidden in the viewport alone") for obj in media(scene) if obj not in seen and is_rendered(obj)
     )
     return _Survey(scene, rows, facts, tuple(doubts.items()), known, [])
 
@@ -745,7 +746,7 @@ def _scene_doubts(scene: bpy.types.Scene, facts: dict[bpy.types.Material, _Facts
     """What makes a render see other objects than the viewport does."""
 
     def shown(objects: Iterable[bpy.types.Object]) -> set[bpy.types.Object]:
-        return {obj for obj in objects if any(slot.material in facts for slot in obj.material_slots)}
+        return {obj for obj in objects if not is_cut_surface(obj) and any(slot.material in facts for slot in obj.material_slots)}
 
     for collection in scene.collection.children_recursive:
         if collection.hide_viewport != collection.hide_render and shown(collection.all_objects):
@@ -756,11 +757,28 @@ def _scene_doubts(scene: bpy.types.Scene, facts: dict[bpy.types.Material, _Facts
             yield layer.name, f"shows other media than {first.name!r}"
 
 
+def may_change(obj: bpy.types.Object) -> str:
+    """Return why an object may be elsewhere or have another shape in a render, or on another frame; empty if it stays."""
+    try:
+        _require_still(obj)
+    except _Doubt as doubt:
+        return str(doubt)
+    return ""
+
+
+def is_one_closed_surface(evaluated: bpy.types.Object) -> str:
+    """Return why an evaluated object bounds no volume once and for all; empty if it does."""
+    solid = _solid(evaluated)
+    if not solid.closed:
+        return "is not closed"
+    return "crosses itself" if solid.overlaps_itself else ""
+
+
 def _require_still(obj: bpy.types.Object) -> None:
     """Raise :class:`_Doubt` if an object may be elsewhere, or without bounds, when the file is rendered."""
     if obj.mode == "EDIT":
         raise _Doubt("is being edited")
-    if obj.hide_render != obj.hide_viewport:
+    if is_rendered(obj) == obj.hide_viewport:
         raise _Doubt("is hidden in the viewport alone, or in renders alone")
     if _moves(obj):
         raise _Doubt("may move")

@@ -84,6 +84,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     render.add_argument("--samples", type=_positive, help="samples per pixel (default: the scene's)")
     render.add_argument("--frame", type=int, help="frame to render (default: the current one)")
+    render.add_argument(
+        "--no-cut", action="store_true", help="render media as they are; the default cuts their surfaces where they cross"
+    )
     render.set_defaults(run=_render)
 
     preparation = commands.add_parser(
@@ -91,6 +94,11 @@ def _parser() -> argparse.ArgumentParser:
     )
     _add_file(preparation)
     _add_saved(preparation)
+    preparation.add_argument(
+        "--cut",
+        action=argparse.BooleanOptionalAction,
+        help="let renders of the file cut surfaces where media cross, or not (default: as the file has it)",
+    )
     preparation.set_defaults(run=_prepare)
 
     update = commands.add_parser(
@@ -188,7 +196,7 @@ def _demo(options: argparse.Namespace) -> None:
     require_blender()
     file_format_of(options.output)  # before any work is done
     scene = build_scene()
-    print(prepare(scene), flush=True)
+    print(prepare(scene, cut=True), flush=True)
     if options.save:
         save_blend(options.save)
     print(render_frame(scene, options.output, options.samples, progress=ProgressLine()))
@@ -197,13 +205,13 @@ def _demo(options: argparse.Namespace) -> None:
 def _render(options: argparse.Namespace) -> None:
     file_format_of(options.output)
     scene = _open(options.file)
-    print(prepare(scene), flush=True)
+    print(prepare(scene, cut=not options.no_cut), flush=True)
     print(render_frame(scene, options.output, options.samples, options.frame, ProgressLine()))
 
 
 def _prepare(options: argparse.Namespace) -> None:
     scene = _open(options.file)
-    print(prepare(scene))
+    print(prepare(scene, options.cut))
     print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
 
 

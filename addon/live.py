@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 import bpy
 
-from . import analysis
+from . import analysis, cutting
 from .identity import NO_SCENE, known_number
 from .lights import update_lights
 from .trees import mend_nodes
@@ -72,6 +72,11 @@ def _analyse(scene: bpy.types.Scene) -> analysis.Found:
     found = analysis.analyse(scene)
     _trust(scene)
     return found
+
+
+def update_cut(scene: bpy.types.Scene) -> cutting.Cut:
+    """Bring what renders show of a scene up to date if its surfaces are cut; return what was found."""
+    return cutting.cut_surfaces(scene, scripted=any(frame_scripts())) if cutting.is_cut(scene) else cutting.Cut()
 
 
 def _trust(scene: bpy.types.Scene) -> None:

@@ -26,6 +26,12 @@ from .trees import mend_nodes
 SOLID_TYPES = frozenset(("MESH", "CURVE", "SURFACE", "FONT", "META"))
 """Types of objects whose surface may enclose something."""
 
+CUT_OF = "nd_cut_of"
+"""Custom property of an object that shows another's surface in renders, cut where media cross: that other one."""
+
+HIDDEN_BY_CUT = "nd_cut"
+"""Custom property of a medium that is hidden from renders because such an object shows it."""
+
 NO_SOLIDS = {
     "POINTCLOUD": ("a point cloud", "instance a closed ball on its points instead (Geometry Nodes: Instance on Points)"),
     "CURVES": (
@@ -135,9 +141,19 @@ def material_priority(material: bpy.types.Material) -> int:
     return BY_KEYWORD["priority"].bounded(dielectric_node(material).inputs["Priority"].default_value)
 
 
+def is_cut_surface(obj: bpy.types.Object) -> bool:
+    """Tell whether an object only shows another's surface in renders."""
+    return CUT_OF in obj
+
+
+def is_rendered(obj: bpy.types.Object) -> bool:
+    """Tell whether an artist lets renders show an object."""
+    return not obj.hide_render or HIDDEN_BY_CUT in obj
+
+
 def all_objects(scene: bpy.types.Scene) -> set[bpy.types.Object]:
-    """Return the objects of a scene and those in instanced collections."""
-    objects = set(scene.objects)
+    """Return the artist's objects of a scene and those in instanced collections."""
+    objects = {obj for obj in scene.objects if not is_cut_surface(obj)}
     pending = [obj.instance_collection for obj in objects if obj.instance_collection is not None]
     seen = set()
     while pending:
@@ -146,6 +162,8 @@ def all_objects(scene: bpy.types.Scene) -> set[bpy.types.Object]:
             continue
         seen.add(collection)
         for obj in collection.all_objects:
+            if is_cut_surface(obj):
+                continue
             objects.add(obj)
             if obj.instance_collection is not None:
                 pending.append(obj.instance_collection)

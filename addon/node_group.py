@@ -85,6 +85,17 @@ _LIGHTS_OUTPUTS = LAMP_OUTPUTS | {EMITTER_OUTPUT: "SHADER", LAMPS_OUTPUT: "INT"}
 ANALYSED = "nd_analysed"
 """Custom property of a scene whose media are kept analysed: what holds of its analysis, :class:`Validity`."""
 
+CUT = "nd_cut"
+"""Custom property of a scene whose surfaces are cut where media cross, and attribute of the faces of such surfaces."""
+
+CUT_PRIORITY, CUT_TINT, CUT_DEPTH, CUT_BY_VOLUME, CUT_CURVE, CUT_SELLMEIER_B, CUT_SELLMEIER_C = (
+    f"nd_cut_{name}" for name in ("priority", "tint", "depth", "by_volume", "curve", "sellmeier_b", "sellmeier_c")
+)
+CUT_ATTRIBUTES = (
+    CUT, CUT_PRIORITY, CUT_TINT, CUT_DEPTH, CUT_BY_VOLUME, CUT_CURVE, CUT_SELLMEIER_B, CUT_SELLMEIER_C
+)
+"""Of faces that are cut: what lies outside them, as in osl/cut.h."""
+
 ANALYSIS_PANEL = "Scene Analysis"
 SCENE_SOCKET = "Analysed Scene"
 OUTSIDE_SOCKET = "Outside"
@@ -524,6 +535,7 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         "AnalysedScene": "INT",
         "AnalysisHolds": "INT",
         "ByVolume": "INT",
+        "Cut": "INT",
         "GivesBack": "INT",
         "Requests": "COLOR",
         "FrontIOR": "INT",
@@ -567,7 +579,9 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     links.new(by_volume, script.inputs["ByVolume"])
     gives_back = math_node(tree, "MULTIPLY", inputs.outputs[GIVES_BACK_SOCKET], analysis_holds)
     links.new(gives_back, script.inputs["GivesBack"])
-    links.new(_requests(tree, inputs, curves_matter, absorbs, analysis_holds), script.inputs["Requests"])
+    cut = view_layer_attribute(tree, f'["{CUT}"]').outputs["Fac"]
+    links.new(cut, script.inputs["Cut"])
+    links.new(_requests(tree, inputs, curves_matter, absorbs, analysis_holds, cut), script.inputs["Requests"])
     links.new(spectral, script.inputs["Spectral"])
     links.new(front_ior, script.inputs["FrontIOR"])
     table = inputs.outputs[TABLE_SOCKET]
@@ -864,6 +878,7 @@ def _requests(
     curves_matter: bpy.types.NodeSocket,
     absorbs: bpy.types.NodeSocket,
     analysis_holds: bpy.types.NodeSocket,
+    cut: bpy.types.NodeSocket,
 ) -> bpy.types.NodeSocket:
     """One colour that depends on every attribute neighbours read of an object, so that Cycles exports them.
 
@@ -889,6 +904,7 @@ def _requests(
         "Dispersion Model": math("MAXIMUM", curve["Sellmeier B"], curve["Dispersion"]),
     }
     names = [
+        *((name, "GEOMETRY", cut) for name in CUT_ATTRIBUTES),
         *((name, "OBJECT", by_object) for name in OBJECT_PROPERTIES),
         (FACE_ATTRIBUTE, "GEOMETRY", math("GREATER_THAN", outside, FACES - 0.5)),
         (PRIORITY_PROPERTY, "OBJECT", None),

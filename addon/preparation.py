@@ -11,8 +11,9 @@ from . import settings
 from .analysis import Found, clear_analysis, is_analysed, last_found
 from .checks import Problem, find_problems
 from .compatibility import achromatic_reason, require_blender
+from .cutting import Cut, is_cut, set_cut, show_whole
 from .lights import update_lights
-from .live import analyse
+from .live import analyse, update_cut
 from .materials import refresh_spectrum
 from .media import all_objects, dispersing_materials, media
 from .parameters import ParameterError
@@ -28,13 +29,14 @@ NO_MEDIA = "No media: assign a preset first"
 @dataclass(frozen=True)
 class Preparation:
     """What :func:`prepare` changed, in sentences, the problems it found and left, what the media of the scene now know of
-    each other, and how many media there are.
+    each other, how many media there are, and which of them are rendered cut.
     """
 
     changes: tuple[str, ...]
     problems: tuple[Problem, ...]
     found: Found = Found()
     media: int = 0
+    cut: Cut = Cut()
 
     @property
     def headline(self) -> str:
@@ -44,6 +46,7 @@ class Preparation:
     def __str__(self) -> str:
         lines = [self.headline]
         lines += [f"changed: {change}" for change in self.changes] or ["nothing to change"]
+        lines += [f"cut: {line}" for line in str(self.cut).splitlines()]
         lines += [f"analysis: {line}" for line in str(self.found).splitlines()]
         return "\n".join(lines + [f"warning: {problem}" for problem in self.problems])
 
@@ -55,7 +58,7 @@ def headline(media: int, problems: int) -> str:
     return "Ready to render" if media else NO_MEDIA
 
 
-def prepare(scene: bpy.types.Scene) -> Preparation:
+def prepare(scene: bpy.types.Scene, cut: bool | None = None) -> Preparation:
     """Set what a scene needs to render nested dielectrics, and look for problems with its media.
 
     Cycles on the CPU with Open Shading Language, and enough bounces; where a medium disperses, the motion blur that
@@ -63,10 +66,15 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
     where none does any more, what motion blur was before; the
     lamps that direct refraction and reflection carry; and what surrounds each medium, so that it need not ask the scene.
     Larger limits stay. A second call changes nothing. Without media nothing is changed, but what an earlier call has set
-    goes back. :func:`put_back` takes it back. Raises
-    :class:`~nested_dielectric.compatibility.UnsupportedError` if this Blender cannot.
+    goes back. :func:`put_back` takes it back.
+
+    :param cut: render surfaces cut where media cross, which is fastest and costs the time of cutting them on each frame, or
+        render the objects as they are; None leaves the scene's own setting.
+    :raises UnsupportedError: if this Blender cannot.
     """
     require_blender()
+    if cut is not None and cut != is_cut(scene):
+        set_cut(scene, cut)
     report = last_report(scene)
     changed = dict(report.settings) if report is not None else {}
     stays = _mend() if _holds_media(scene) else []
@@ -74,7 +82,7 @@ def prepare(scene: bpy.types.Scene) -> Preparation:
         preparation = _prepare(scene, changed, stays)
     else:
         back = settings.go_back(scene, changed)
-        preparation = Preparation(tuple(stays + back), tuple(version_problems() + find_problems(scene)))
+        preparation = Preparation(tuple(stays + back), tuple(version_problems() + find_problems(scene)), cut=update_cut(scene))
     keep_report(scene, preparation.media, preparation.problems, stays, changed)
     return preparation
 
@@ -117,7 +125,7 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
     if parted:
         found = last_found(scene)
     problems += coincident + find_problems(scene)
-    return Preparation(tuple(stays + changes + parted), tuple(problems), found, len(media(scene)))
+    return Preparation(tuple(stays + changes + parted), tuple(problems), found, len(media(scene)), update_cut(scene))
 
 
 def _ensure_random_time(scene: bpy.types.Scene, changed: Changed) -> list[str]:
@@ -161,5 +169,7 @@ def put_back(scene: bpy.types.Scene) -> Sequence[str]:
     if is_analysed(scene):
         clear_analysis(scene)
         changes.append("Media: ask the scene what surrounds them")
+    if show_whole(scene):
+        changes.append("Media: rendered as they are, not cut")
     forget_report(scene)
     return changes

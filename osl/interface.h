@@ -20,8 +20,10 @@ struct Interface {
  * leaving, those just behind it, so of two coincident faces one is valid and one is not whichever is met first.
  *
  * `always_air`: the analysis tells so of all objects of the material, which leaves out most of this; looks_ahead: the
- * extent of the media matters; `curves`: see CURVES_NONE. */
-Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int looks_ahead, int curves, float wavelength)
+ * extent of the media matters; `cut`: surfaces of the scene are cut where media cross; `wants_priority`:
+ * that of the medium outside matters; `curves`: see CURVES_NONE. */
+Interface resolve_interface(Medium own, Outside told_of_all, int cut, int wants_priority, int always_air, int looks_ahead,
+                            int curves, float wavelength)
 {
   vector away = backfacing() ? -Ng : Ng;
   Medium inner = own;
@@ -35,10 +37,15 @@ Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int
   int known = told_of_all.gives_back || (own.absorbs && looks_ahead); /* what may be constant stands first, or nothing folds away */
   if (known)
     inner.priority = shaded_priority(own.priority);
-  if (always_air) {
+  int exists = 1;
+  if (cut && cut_outside(known || wants_priority, curves, wavelength, told_of_all.scene, outer, exists)) {
+    s.valid = exists;
+    outer_holders = 1;
+  }
+  else if (always_air) {
     int traced = 1;
     if (spot_check())
-      s.mistold = (lies_in_a_medium(P, away, traced) && lies_in_a_medium(P, askew(away), traced)) || !traced;
+      s.mistold = (lies_in_a_medium(P, away, cut, traced) && lies_in_a_medium(P, askew(away), cut, traced)) || !traced;
   }
   else {
     Outside told = told_of_all;
@@ -56,7 +63,7 @@ Interface resolve_interface(Medium own, Outside told_of_all, int always_air, int
     int checks = ((!unknown || told.level >= 0.0) && spot_check()) ? 2 : 0;
     for (int i = unknown ? 0 : 1; i <= checks; i++) {
       Surroundings found = probe_surroundings(P, (i < 2) ? away : askew(away), inner.priority, known, i ? -1.0 : told.level,
-                                              told.overlaps_itself, curves, wavelength, told.scene);
+                                              told.overlaps_itself, cut, curves, wavelength, told.scene);
       if (i == 0) {
         s.traced = found.traced;
         inner.priority = found.own_priority;

@@ -1,6 +1,7 @@
 /* What a point lies in, asked of the scene by trace(). */
 #pragma once
 
+#include "cut.h"
 #include "optics.h"
 #include "outside.h"
 
@@ -13,6 +14,13 @@
 float step_past(float t)
 {
   return t + t * 1.2e-7 + 1e-30;
+}
+
+/* Whether the surface hit last is cut where media cross. All that it meets is cut with it, so it surrounds nothing that asks. */
+int hit_cut()
+{
+  float told = 0.0;
+  return getmessage("trace", CUT_FACE, told) && told != 0.0;
 }
 
 /* +1 if the surface hit last was left from its inside, -1 if it was entered from its outside.
@@ -56,9 +64,9 @@ struct Surroundings {
  * own_priority is the material's until an object's own is asked for, which a surface that meets no other medium never
  * needs; own_is_known tells that it has been. Where `level` is a priority, objects of that priority alone may be around,
  * all closed and apart from each other: the nearest surface of theirs decides. Surfaces of an object that overlaps itself
- * count as any other's. */
+ * count as any other's. `cut`: surfaces of the scene are cut where media cross. */
 Surroundings probe_surroundings(point origin, vector direction, float own_priority, int own_is_known, float level,
-                                int overlaps_itself, int curves, float wavelength, int scene)
+                                int overlaps_itself, int cut, int curves, float wavelength, int scene)
 {
   float open[PROBE_LEVELS];
   int sum[PROBE_LEVELS];
@@ -92,7 +100,7 @@ Surroundings probe_surroundings(point origin, vector direction, float own_priori
     getmessage("trace", "hitdist", distance);
     t = step_past(distance);
     getmessage("trace", "hitself", self);
-    if (self > 0.0 && !overlaps_itself)
+    if ((self > 0.0 && !overlaps_itself) || (cut && hit_cut()))
       continue;
     int slot = NO_SLOT;
     float priority = hit_priority(slot);
@@ -163,7 +171,7 @@ int agrees(int valid, Medium outer, Surroundings found)
 
 /* Whether any medium fills the point just off P, P's own object left out; not, if more is in the way than a probe may
  * count. `traced` as in Surroundings. */
-int lies_in_a_medium(point origin, vector direction, output int traced)
+int lies_in_a_medium(point origin, vector direction, int cut, output int traced)
 {
   int sum = 0;
   float t = 0.0;
@@ -178,7 +186,7 @@ int lies_in_a_medium(point origin, vector direction, output int traced)
     getmessage("trace", "hitdist", distance);
     t = step_past(distance);
     getmessage("trace", "hitself", self);
-    if (self == 0.0 && getmessage("trace", OBJECT_PRIORITY, priority))
+    if (self == 0.0 && getmessage("trace", OBJECT_PRIORITY, priority) && !(cut && hit_cut()))
       sum += hit_crossing(direction);
   }
   return 0;
