@@ -23,10 +23,13 @@ from .cutting_nodes import (
     BODY_INPUT,
     CUT_GROUP,
     CUT_INPUT,
+    END_INPUT,
     HIDDEN,
     OWN_INPUT,
+    PART,
     Layer,
     Plan,
+    ensure_part_tree,
     ensure_surface_tree,
     make_cut_tree,
     told_layers,
@@ -44,6 +47,9 @@ from .trees import is_plugged, shows_other_volume, shows_others_blindly
 COLLECTION = "Nested Dielectric Cut"
 SUFFIX = " (cut)"
 """Behind a medium's name: the object that shows its surface."""
+
+HOLDER = "all"
+"""In place of a medium: an object that shows none."""
 
 PLAN = "nd_plan"
 """Custom property of the object that holds the cut: what its nodes were made from."""
@@ -130,13 +136,37 @@ def show_whole(scene: bpy.types.Scene) -> bool:
     return was_cut
 
 
+def show_strays() -> None:
+    """Let renders show media that are hidden in favour of surfaces of a scene that they are not in."""
+    shown = {obj for scene in bpy.data.scenes if is_cut(scene) for obj in scene.objects}
+    for obj in bpy.data.objects:
+        if obj not in shown:
+            _unhide(obj)
+
+
+_CONCERNED = (
+    bpy.types.Scene,
+    bpy.types.Object,
+    bpy.types.Mesh,
+    bpy.types.Material,
+    bpy.types.ShaderNodeTree,
+    bpy.types.Collection,
+)
+
+
+def concerns(depsgraph: bpy.types.Depsgraph) -> bool:
+    """Tell whether an update may change which media cross, or how they are shown."""
+    return any(isinstance(update.id, _CONCERNED) for update in depsgraph.updates)
+
+
 # Planning -----------------------------------------------------------------------------------------------------------
 
 
 @unchanged_nodes()
 def make_plan(scene: bpy.types.Scene, scripted: bool = False) -> tuple[Plan, Cut]:
     """Tell what to cut of a scene, as :func:`cut_surfaces` does."""
-    objects = [obj for obj in media(scene) if is_rendered(obj)]
+    hidden = set(scene.objects) - _in_shown_collections(scene.collection)
+    objects = [obj for obj in media(scene) if is_rendered(obj) and obj not in hidden]
     hindered = _hindrances(scene, objects)
     moving = set(objects) if scripted else {obj for obj in objects if analysis.may_change(obj)}
     known = None if moving else _surroundings(scene, objects)
@@ -148,13 +178,20 @@ def make_plan(scene: bpy.types.Scene, scripted: bool = False) -> tuple[Plan, Cut
         asking += [(obj.name, hindered[obj]) for obj in bad]
         if bad:
             asking += [(obj.name, f"may meet {bad[0].name!r}, which is not cut") for obj in group if obj not in hindered]
-        elif len(group) > 1:
+        elif len(group) > 1 and any(known is None or known[obj].may_cross for obj in group):
             chosen += group
     layers, pairs = _layers(scene, chosen, moving, touching, known)
     if moving and len(layers) > MOST_LAYERS:
         reason = f"moves among media of more than {MOST_LAYERS} priorities and materials"
         return Plan((), frozenset(), False), Cut((), (*asking, *((obj.name, reason) for obj in chosen)))
     return Plan(layers, pairs, bool(moving)), Cut(tuple(obj.name for obj in chosen), tuple(asking))
+
+
+def _in_shown_collections(collection: bpy.types.Collection) -> set[bpy.types.Object]:
+    """Objects that no collection hides from renders."""
+    if collection.hide_render:
+        return set()
+    return set(collection.objects).union(*map(_in_shown_collections, collection.children))
 
 
 def _hindrances(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> dict[bpy.types.Object, str]:
@@ -265,6 +302,11 @@ class _Surroundings:
     partners: tuple[bpy.types.Object, ...]
     is_simple: bool
 
+    @property
+    def may_cross(self) -> bool:
+        """Whether not all of its surface has the same outside."""
+        return self.code not in (AIR, MEDIUM, NEVER)
+
 
 def _surroundings(
     scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]
@@ -342,7 +384,7 @@ def _layers(
     place = {obj: index for index, members in enumerate(grouped.values()) for obj in members}
     crossing = set(objects)
     if known is not None:
-        odd = {obj for obj in objects if known[obj].code not in (AIR, MEDIUM, NEVER)}
+        odd = {obj for obj in objects if known[obj].may_cross}
         crossing = odd | {other for obj in odd for other in known[obj].partners if not _lies_within(other, known, grouped)}
     pairs = {
         tuple(sorted((place[obj], place[other])))
@@ -449,22 +491,26 @@ def _show(scene: bpy.types.Scene, plan: Plan) -> None:
     collection = _ensure_collection(scene)
     surfaces = {}
     for obj in list(collection.objects):
-        source = obj[CUT_OF]
-        if isinstance(source, bpy.types.Object) and source in numbers and source not in surfaces:
+        source = obj.get(CUT_OF)
+        if source in numbers and source not in surfaces:
             surfaces[source] = obj
-        elif source is not True:
+        elif source != HOLDER:
             _remove(obj)
     for obj in scene.objects:
         if HIDDEN_BY_CUT in obj and obj not in numbers:
             _unhide(obj)
-    holder = _ensure_holder(collection)
+    holder, *parts = _ensure_holders(collection, len(numbers))
     _ensure_nodes(holder, plan)
+    for place, part in enumerate(parts):
+        part.modifiers[0].node_group = ensure_part_tree()
+        _set_inputs(part.modifiers[0], {CUT_INPUT: holder, BODY_INPUT: place * PART, END_INPUT: (place + 1) * PART})
     tree = ensure_surface_tree()
     for obj, number in numbers.items():
         if obj not in surfaces:
             surfaces[obj] = _new_surface(obj, collection, tree)
         surface = surfaces[obj]
-        _set_inputs(surface.modifiers[0], {OWN_INPUT: obj, CUT_INPUT: holder, BODY_INPUT: number})
+        source = parts[number // PART] if parts else holder
+        _set_inputs(surface.modifiers[0], {OWN_INPUT: obj, CUT_INPUT: source, BODY_INPUT: number})
         _liken(surface, obj)
         if HIDDEN_BY_CUT not in obj:
             obj[HIDDEN_BY_CUT] = True
@@ -473,16 +519,20 @@ def _show(scene: bpy.types.Scene, plan: Plan) -> None:
     _link_lights(surfaces)
 
 
-def _ensure_holder(collection: bpy.types.Collection) -> bpy.types.Object:
-    """The object whose modifier cuts. It is nowhere seen itself."""
-    holder = next((obj for obj in collection.objects if obj[CUT_OF] is True), None)
-    if holder is None:
+def _ensure_holders(collection: bpy.types.Collection, media: int) -> list[bpy.types.Object]:
+    """The object whose modifier cuts, and where there are many media one for each part of them. They are nowhere seen."""
+    count = 1 + (-(-media // PART) if media > PART else 0)
+    holders = sorted((obj for obj in collection.objects if obj.get(CUT_OF) == HOLDER), key=lambda obj: PLAN not in obj)
+    for obj in holders[count:]:
+        _remove(obj)
+    while len(holders) < count:
         holder = bpy.data.objects.new(COLLECTION, bpy.data.meshes.new(COLLECTION))
-        holder[CUT_OF] = True
+        holder[CUT_OF] = HOLDER
         holder.hide_render = holder.hide_viewport = holder.hide_select = True
         holder.modifiers.new(CUT_GROUP, "NODES")
         collection.objects.link(holder)
-    return holder
+        holders.append(holder)
+    return holders[:count]
 
 
 def _ensure_nodes(holder: bpy.types.Object, plan: Plan) -> None:
@@ -578,34 +628,46 @@ def _liken(surface: bpy.types.Object, obj: bpy.types.Object) -> None:
             before = getattr(owner, name)
             if value != before and (isinstance(value, (bool, int, float, str)) or tuple(value) != tuple(before)):
                 setattr(owner, name, value)
-            if owner == surface and name in animated:
-                _follow(surface, obj, name)
-    surface.name = obj.name + SUFFIX
+    if not surface.name.startswith(obj.name + SUFFIX):
+        surface.name = obj.name + SUFFIX
     while len(surface.data.materials) < len(obj.material_slots):
         surface.data.materials.append(None)
     for own, slot in zip(surface.material_slots, obj.material_slots):
         if own.link != slot.link or own.material != slot.material:
             own.link = slot.link
             own.material = slot.material
-    for key in obj.keys():
-        if key not in (HIDDEN_BY_CUT, CUT_OF) and surface.get(key) is not obj[key]:
-            surface[key] = obj[key]
+    own = {key: _plain(obj[key]) for key in obj.keys() if key != HIDDEN_BY_CUT}
+    for key in surface.keys() - own.keys() - {CUT_OF}:
+        del surface[key]
+    for key, value in own.items():
+        if key not in surface or _plain(surface[key]) != value:
+            surface[key] = value
+    for path in animated:
+        if path in ALIKE or path.startswith('["'):
+            _follow(surface, obj, path)
     for linking in ("receiver_collection", "blocker_collection"):
         if getattr(surface.light_linking, linking) != getattr(obj.light_linking, linking):
             setattr(surface.light_linking, linking, getattr(obj.light_linking, linking))
 
 
-def _follow(surface: bpy.types.Object, obj: bpy.types.Object, name: str) -> None:
+def _plain(value):
+    """What a custom property holds, to be compared and copied."""
+    if hasattr(value, "to_dict"):
+        return value.to_dict()
+    return value.to_list() if hasattr(value, "to_list") else value
+
+
+def _follow(surface: bpy.types.Object, obj: bpy.types.Object, path: str) -> None:
     """Let a property of the surface be what the medium's is on each frame."""
-    if any(curve.data_path == name for curve in curves(surface.animation_data)):
+    if any(curve.data_path == path for curve in curves(surface.animation_data)):
         return
-    value = getattr(obj, name)
+    value = obj.path_resolve(path)
     for part in [-1] if isinstance(value, (bool, int, float)) else range(len(value)):
-        driver = surface.driver_add(name, part).driver
+        driver = surface.driver_add(path, part).driver
         driver.type = "SUM"
         target = driver.variables.new().targets[0]
         target.id = obj
-        target.data_path = name if part < 0 else f"{name}[{part}]"
+        target.data_path = path if part < 0 else f"{path}[{part}]"
 
 
 def _link_lights(surfaces: dict[bpy.types.Object, bpy.types.Object]) -> None:

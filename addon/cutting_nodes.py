@@ -1,9 +1,9 @@
 """Geometry Nodes that cut the surfaces of media where they cross, so that every face lies between two known media.
 
 One object holds the whole cut: its modifier reads all media, in layers of one priority and one material each, the strongest
-first. What a layer leaves of space to itself is bounded by its own faces and by faces of the stronger ones, and outside these
-is that layer: so each of them is found once, with its layer. The union of all layers has the faces that are in air. For each
-medium an object picks its own faces.
+first. What the union of the stronger ones leaves of a layer is bounded by the layer's own faces and by theirs, and outside the
+latter is that layer: so each of them is found once, with what lies outside. The union of all layers has the faces in air. For
+each medium an object picks its own faces.
 
 Nothing here knows the extension: a file that is rendered without it evaluates the same.
 """
@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
-from itertools import combinations
 
 import bpy
 
@@ -44,11 +43,15 @@ CHUNK = 24
 BODY = "nd_body"
 NORMAL = "nd_normal"
 
+PART = 32
+"""Media whose faces stand together: whoever picks one's looks at each of them."""
+
+PART_GROUP = "Nested Dielectric Cut Part"
 SURFACE_GROUP = "Nested Dielectric Cut Surface"
 BODY_GROUP = "Nested Dielectric Cut Body"
 CUT_GROUP = "Nested Dielectric Cut"
 
-OWN_INPUT, CUT_INPUT, BODY_INPUT = "Medium", "Cut", "Body"
+OWN_INPUT, CUT_INPUT, BODY_INPUT, END_INPUT = "Medium", "Cut", "Body", "End"
 
 VALUES = {
     "IOR": "NodeSocketFloat",
@@ -219,20 +222,18 @@ class _Builder:
             )
         )
 
-    def united(self, geometries: Sequence[bpy.types.NodeSocket]) -> bpy.types.NodeSocket:
-        """Closed meshes as one closed mesh."""
-        return self._boolean("UNION", None, geometries)
+    def united(self, first, second) -> bpy.types.NodeSocket:
+        """Two closed meshes as one."""
+        node = self.node("GeometryNodeMeshBoolean", properties={"operation": "UNION", "solver": "MANIFOLD"})
+        for geometry in (first, second):
+            self.put(node.inputs["Mesh 2"], geometry)
+        return node.outputs["Mesh"]
 
-    def less(self, geometry, others: Sequence[bpy.types.NodeSocket]) -> bpy.types.NodeSocket:
-        """A closed mesh without what is in others."""
-        return self._boolean("DIFFERENCE", geometry, others)
-
-    def _boolean(self, operation: str, first, others) -> bpy.types.NodeSocket:
-        node = self.node("GeometryNodeMeshBoolean", properties={"operation": operation, "solver": "MANIFOLD"})
-        if first is not None:
-            self.put(node.inputs["Mesh 1"], first)
-        for other in others:
-            self.put(node.inputs["Mesh 2"], other)
+    def less(self, geometry, other) -> bpy.types.NodeSocket:
+        """A closed mesh without what is in another."""
+        node = self.node("GeometryNodeMeshBoolean", properties={"operation": "DIFFERENCE", "solver": "MANIFOLD"})
+        self.put(node.inputs["Mesh 1"], geometry)
+        self.put(node.inputs["Mesh 2"], other)
         return node.outputs["Mesh"]
 
     def faces(self, geometry, selection) -> bpy.types.NodeSocket:
@@ -247,10 +248,7 @@ class _Builder:
 
     def numbered(self, geometry, first: int, end: int) -> bpy.types.NodeSocket:
         """The faces of bodies from one number to before another."""
-        number = self.attribute(BODY, "INT")
-        return self.faces(
-            geometry, self.all_of((self.compare(number, "GREATER_EQUAL", first), self.compare(number, "LESS_THAN", end)))
-        )
+        return self.faces(geometry, _is_among(self, first, end))
 
 
 def _input(node: bpy.types.Node, name: str) -> bpy.types.NodeSocket:
@@ -295,15 +293,45 @@ def ensure_surface_tree() -> bpy.types.NodeTree:
     own = _mesh_of(build, build.inputs.outputs[OWN_INPUT])
     first = build.node("GeometryNodeSeparateGeometry", properties={"domain": "POINT"}, Geometry=own)
     build.put(first.inputs["Selection"], build.compare(build.tree.nodes.new("GeometryNodeInputIndex").outputs[0], "EQUAL", 0))
-    cut = build.node("GeometryNodeObjectInfo", properties={"transform_space": "RELATIVE"}, Object=build.inputs.outputs[CUT_INPUT])
-    picked = build.node("GeometryNodeSeparateGeometry", properties={"domain": "INSTANCE"}, Geometry=cut.outputs["Geometry"])
-    number = build.attribute(BODY, "INT")
-    build.put(picked.inputs["Selection"], build.compare(number, "EQUAL", build.inputs.outputs[BODY_INPUT]))
-    faces = build.node("GeometryNodeRealizeInstances", Geometry=picked.outputs["Selection"]).outputs[0]
+    cut = _cut_by(build)
+    picked = _picked(build, cut, build.compare(build.attribute(BODY, "INT"), "EQUAL", build.inputs.outputs[BODY_INPUT]))
+    faces = build.node("GeometryNodeRealizeInstances", Geometry=picked).outputs[0]
     shown = build.joined([first.outputs["Selection"], faces])
     smooth = build.count(shown, "FACE", build.tree.nodes.new("GeometryNodeInputShadeSmooth").outputs[0])
     build.returns(Geometry=build.switch(build.compare(smooth, "GREATER_THAN", 0.5, "FLOAT"), shown, _with_normals(build, shown, cut)))
     return tree
+
+
+def ensure_part_tree() -> bpy.types.NodeTree:
+    """Return the group by which an object holds the faces of some media of the cut, from one number to before another."""
+    tree = _find_tree(PART_GROUP)
+    if tree is not None:
+        return tree
+    inputs = {CUT_INPUT: "NodeSocketObject", BODY_INPUT: "NodeSocketInt", END_INPUT: "NodeSocketInt"}
+    tree = _new_tree(PART_GROUP, inputs, GEOMETRY, "Surfaces of some media, cut where they cross")
+    tree.is_modifier = True
+    build = _Builder(tree)
+    build.returns(Geometry=_picked(build, _cut_by(build), _is_among(build, *(build.inputs.outputs[name] for name in (BODY_INPUT, END_INPUT)))))
+    return tree
+
+
+def _cut_by(build: _Builder) -> bpy.types.Node:
+    """What the object that cuts shows, seen from this one's space."""
+    return build.node(
+        "GeometryNodeObjectInfo", properties={"transform_space": "RELATIVE"}, Object=build.inputs.outputs[CUT_INPUT]
+    )
+
+
+def _picked(build: _Builder, cut: bpy.types.Node, selection) -> bpy.types.NodeSocket:
+    node = build.node("GeometryNodeSeparateGeometry", properties={"domain": "INSTANCE"}, Geometry=cut.outputs["Geometry"])
+    build.put(node.inputs["Selection"], selection)
+    return node.outputs["Selection"]
+
+
+def _is_among(build: _Builder, first, end) -> bpy.types.NodeSocket:
+    """Whether the number of a body is one from the first to before the end."""
+    number = build.attribute(BODY, "INT")
+    return build.all_of((build.compare(number, "GREATER_EQUAL", first), build.compare(number, "LESS_THAN", end)))
 
 
 def _with_normals(build: _Builder, geometry, cut: bpy.types.Node) -> bpy.types.NodeSocket:
@@ -457,7 +485,7 @@ def _united_where_they_meet(build: _Builder, geometries: Sequence[bpy.types.Node
         rest = geometries[len(pairs) * 2 :]
         geometries = [
             build.switch(
-                build.meet(build.box(first), build.box(second)), build.joined([first, second]), build.united([first, second])
+                build.meet(build.box(first), build.box(second)), build.joined([first, second]), build.united(first, second)
             )
             for first, second in pairs
         ] + rest
@@ -469,47 +497,27 @@ def _cut(
 ) -> list[bpy.types.NodeSocket]:
     """Faces of the layers that cross, each with what lies outside it."""
     boxes = {place: build.box(geometry) for place, geometry in layers.items()} if plan.may_part else {}
-    meet = {
-        (first, second): build.meet(boxes[first], boxes[second]) if plan.may_part else None
-        for first, second in combinations(layers, 2)
-        if (first, second) in plan.pairs
-    }
     pieces = []
+    winners = None
     for place, geometry in layers.items():
-        stronger = [other for other in layers if (other, place) in meet]
+        stronger = [other for other in layers if (other, place) in plan.pairs]
         if not stronger:
+            winners = geometry if winners is None else build.joined([winners, geometry])
             continue
         first = numbers[plan.layers[place].bodies[0]]
-        others = [_if_meeting(build, meet[other, place], layers[other]) for other in stronger]
-        told = _told(build, plan, build.flipped(build.numbered(build.less(geometry, others), 0, first)), place)
-        found = [told]
+        outer = build.flipped(build.numbered(build.less(geometry, winners), 0, first))
+        found = _told(build, plan, outer, place)
         if plan.layers[place].keeps_hidden:
-            end = first + len(plan.layers[place].bodies)
-            winners = build.united(others) if len(others) > 1 else others[0]
-            hidden = build.flipped(build.numbered(build.less(winners, [geometry]), first, end))
-            found.append(_told(build, plan, hidden, HIDDEN))
+            hidden = build.numbered(build.less(winners, geometry), first, first + len(plan.layers[place].bodies))
+            found = build.joined([found, _told(build, plan, build.flipped(hidden), HIDDEN)])
+        union = build.united(winners, geometry)
         if plan.may_part:
-            any_meets = build.all_of([meet[other, place] for other in stronger], "OR")
-            pieces.append(build.switch(any_meets, None, build.joined(found)))
-        else:
-            pieces += found
-    together, alone = [], []
-    for place, geometry in layers.items():
-        gates = [gate for pair, gate in meet.items() if place in pair]
-        if not gates:
-            alone.append(geometry)
-        elif plan.may_part:
-            meets = build.all_of(gates, "OR")
-            together.append(build.switch(meets, None, geometry))
-            alone.append(build.switch(meets, geometry, None))
-        else:
-            together.append(geometry)
-    in_air = [build.united(together)] if together else []
-    return pieces + [_told(build, plan, build.joined(in_air + alone), None)]
-
-
-def _if_meeting(build: _Builder, gate, geometry) -> bpy.types.NodeSocket:
-    return geometry if gate is None else build.switch(gate, None, geometry)
+            meets = build.all_of([build.meet(boxes[other], boxes[place]) for other in stronger], "OR")
+            found = build.switch(meets, None, found)
+            union = build.switch(meets, build.joined([winners, geometry]), union)
+        pieces.append(found)
+        winners = union
+    return pieces + [_told(build, plan, winners, None)]
 
 
 def _told(build: _Builder, plan: Plan, geometry, around: int | None) -> bpy.types.NodeSocket:

@@ -52,6 +52,7 @@ def _handlers() -> tuple[tuple[list, Callable], ...]:
         (handlers.frame_change_post, analyse_after_frame_change),
         (handlers.depsgraph_update_post, analyse_after_update),
         (handlers.load_post, distrust_loaded),
+        (handlers.blend_import_post, show_strays),
         (handlers.save_pre, narrow_before_save),
         (handlers.save_post, widen_after_save),
         (handlers.undo_post, forget_shapes),
@@ -75,8 +76,17 @@ def _analyse(scene: bpy.types.Scene) -> analysis.Found:
 
 
 def update_cut(scene: bpy.types.Scene) -> cutting.Cut:
-    """Bring what renders show of a scene up to date if its surfaces are cut; return what was found."""
-    return cutting.cut_surfaces(scene, scripted=any(frame_scripts())) if cutting.is_cut(scene) else cutting.Cut()
+    """Bring what renders show of a scene up to date if its surfaces are cut; return what was found. The scene is kept so from
+    then on, as by :func:`analyse`.
+    """
+    if not cutting.is_cut(scene):
+        return cutting.Cut()
+    install()
+    return cutting.cut_surfaces(scene, scripted=any(frame_scripts()))
+
+
+def _cut_scenes() -> list[bpy.types.Scene]:
+    return [scene for scene in bpy.data.scenes if cutting.is_cut(scene) and scene.library is None]
 
 
 def _trust(scene: bpy.types.Scene) -> None:
@@ -109,6 +119,7 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
     if analysis.is_analysed(scene):
         mend_nodes_of(bpy.data.materials)
         _analyse(scene)
+    update_cut(scene)
 
 
 @bpy.app.handlers.persistent
@@ -142,6 +153,8 @@ def analyse_after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
 @bpy.app.handlers.persistent
 def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Follow what moves, changes, comes and goes. In a window nothing is to wait while the mouse drags it."""
+    if cutting.is_cut(scene) and has_window() and cutting.concerns(depsgraph):
+        _wait_for_rest()
     if not analysis.is_analysed(scene):
         return
     mend_nodes_of({update.id.original for update in depsgraph.updates})
@@ -173,6 +186,8 @@ def analyse_at_rest() -> float | None:
     for scene in _analysed_scenes():
         analysis.settle(scene)
         _trust(scene)
+    for scene in _cut_scenes():
+        update_cut(scene)
     return None
 
 
@@ -202,8 +217,14 @@ def distrust_loaded(*_: object) -> None:
     analysis.forget_shapes()
     for scene in _analysed_scenes():
         analysis.distrust(scene)
-        if has_window():
-            _wait_for_rest()
+    if has_window() and (_analysed_scenes() or _cut_scenes()):
+        _wait_for_rest()
+
+
+@bpy.app.handlers.persistent
+def show_strays(*_: object) -> None:
+    """Let renders show media that came from a scene that is cut without what showed them there."""
+    cutting.show_strays()
 
 
 @bpy.app.handlers.persistent
@@ -214,6 +235,8 @@ def narrow_before_save(*_: object) -> None:
             analysis.distrust(scene)
         analysis.settle(scene)
         analysis.trust(scene, every_frame=False)
+    for scene in _cut_scenes():
+        update_cut(scene)
 
 
 @bpy.app.handlers.persistent
