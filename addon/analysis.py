@@ -869,12 +869,13 @@ def _is_exact(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
     return (
         not scene.render.use_simplify
         and is_seen_by_all(obj)
-        and all(map(_is_same_in_renders, obj.modifiers))
+        and all(map(is_same_in_renders, obj.modifiers))
         and (obj.type not in _CONVERTED or _is_as_fine_in_renders(obj))
     )
 
 
-def _is_same_in_renders(modifier: bpy.types.Modifier) -> bool:
+def is_same_in_renders(modifier: bpy.types.Modifier) -> bool:
+    """Tell whether a modifier does the same in the viewport and in renders."""
     if modifier.show_viewport != modifier.show_render:
         return False
     if modifier.type == "SUBSURF":

@@ -21,6 +21,7 @@ from .compatibility import require_blender
 from .files import absolute, ending_at_once, replacing
 from .iced_water import build_scene
 from .jf import JfError, read_nodes, report, translate
+from .live import keep_cut
 from .materials import dielectric_node, new_material
 from .output import check_picture, reason, save_blend
 from .parameters import BY_KEYWORD, ParameterError
@@ -97,7 +98,8 @@ def _parser() -> argparse.ArgumentParser:
     preparation.add_argument(
         "--cut",
         action=argparse.BooleanOptionalAction,
-        help="let renders of the file cut surfaces where media cross, or not (default: as the file has it)",
+        help="let renders of the file show surfaces cut where media cross, that of its frame kept in the file for farms; or not "
+        "(default: as the file has it)",
     )
     preparation.set_defaults(run=_prepare)
 
@@ -212,6 +214,9 @@ def _render(options: argparse.Namespace) -> None:
 def _prepare(options: argparse.Namespace) -> None:
     scene = _open(options.file)
     print(prepare(scene, options.cut))
+    if options.cut:
+        hindrance = keep_cut(scene)
+        print(f"each frame is cut as it is rendered: {hindrance}" if hindrance else f"the cut of frame {scene.frame_current} is in the file")
     print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
 
 

@@ -24,7 +24,9 @@ from .cutting_nodes import (
     CUT_GROUP,
     CUT_INPUT,
     END_INPUT,
+    FRAME_INPUT,
     HIDDEN,
+    KEPT_INPUT,
     OWN_INPUT,
     PART,
     Layer,
@@ -42,11 +44,15 @@ from .materials import dielectric_node, dielectrics, medium_material, unchanged_
 from .media import CUT_OF, HIDDEN_BY_CUT, get_priority, is_cut_surface, is_rendered, media
 from .node_group import CUT, has_analysis
 from .parameters import PRIORITY_PROPERTY
+from .shapes import content_of
 from .trees import is_plugged, shows_other_volume, shows_others_blindly
 
 COLLECTION = "Nested Dielectric Cut"
 SUFFIX = " (cut)"
 """Behind a medium's name: the object that shows its surface."""
+
+KEPT = "nd_kept"
+"""The same of the cut that is kept: what it was made from."""
 
 HOLDER = "all"
 """In place of a medium: an object that shows none."""
@@ -117,13 +123,32 @@ def cut_surfaces(scene: bpy.types.Scene, scripted: bool = False) -> Cut:
     """
     plan, found = make_plan(scene, scripted)
     _show(scene, plan)
+    _drop_if_changed(scene, plan)
+    _last[scene.session_uid] = found
     return found
+
+
+_last: dict[int, Cut] = {}
+"""What was found of each scene in this session, by its number."""
+
+
+def last_cut(scene: bpy.types.Scene) -> Cut | None:
+    """Return what was last found of a scene that is cut; None if it is not, or nobody has looked in this session."""
+    return _last.get(scene.session_uid) if is_cut(scene) else None
 
 
 def show_whole(scene: bpy.types.Scene) -> bool:
     """Render the artist's own objects again; return whether they were not."""
     was_cut = is_cut(scene)
     scene.pop(CUT, None)
+    _clear(scene)
+    _last.pop(scene.session_uid, None)
+    if was_cut:
+        scene.update_tag()
+    return was_cut
+
+
+def _clear(scene: bpy.types.Scene) -> None:
     collection = _find_collection(scene)
     if collection is not None:
         for obj in list(collection.objects):
@@ -131,9 +156,95 @@ def show_whole(scene: bpy.types.Scene) -> bool:
         bpy.data.collections.remove(collection)
     for obj in scene.objects:
         _unhide(obj)
-    if was_cut:
-        scene.update_tag()
-    return was_cut
+
+
+def keep_in_file(scene: bpy.types.Scene, scripted: bool = False) -> str:
+    """Keep the cut of the present frame in the file, so that whoever renders this frame has nothing to cut; other frames are
+    cut as ever. :func:`forget_kept` takes it back. Returns why that cannot be, or nothing.
+    """
+    surfaces = _surfaces(scene)
+    plan, _ = make_plan(scene, scripted)
+    if not surfaces or _holder(scene).get(PLAN) != _described(plan):
+        return "nothing is cut, or something has changed since; press Prepare Scene"
+    if scene.render.use_simplify:
+        return "Simplify may show other shapes in a render"
+    different = [obj.name for obj in surfaces if not all(map(analysis.is_same_in_renders, obj.modifiers))]
+    if different:
+        return f"{analysis.listed(tuple(different))} has modifiers that do otherwise in renders"
+    forget_kept(scene)
+    layer = scene.view_layers[0]
+    for surface in surfaces.values():
+        surface.hide_viewport = False
+    layer.update()
+    for surface in surfaces.values():
+        evaluated = surface.evaluated_get(layer.depsgraph)
+        mesh = bpy.data.meshes.new_from_object(evaluated, preserve_all_data_layers=True, depsgraph=layer.depsgraph)
+        mesh.use_auto_texspace = False
+        mesh.texspace_location, mesh.texspace_size = evaluated.data.texspace_location, evaluated.data.texspace_size
+        _exchange_mesh(surface, mesh)
+        _set_inputs(surface.modifiers[0], {KEPT_INPUT: True, FRAME_INPUT: scene.frame_current})
+        surface.hide_viewport = True
+    _holder(scene)[KEPT] = _state(scene, plan)
+    return ""
+
+
+def is_kept(scene: bpy.types.Scene) -> bool:
+    """Tell whether the cut of one frame is kept in the file."""
+    holder = _holder(scene)
+    return holder is not None and KEPT in holder
+
+
+def forget_kept(scene: bpy.types.Scene) -> bool:
+    """Cut every frame as it is rendered; return whether one was kept."""
+    was_kept = is_kept(scene)
+    for obj, surface in _surfaces(scene).items() if was_kept else ():
+        _set_inputs(surface.modifiers[0], {KEPT_INPUT: False})
+        _exchange_mesh(surface, bpy.data.meshes.new(surface.name))
+        _liken(surface, obj)
+    if was_kept:
+        del _holder(scene)[KEPT]
+    return was_kept
+
+
+def _drop_if_changed(scene: bpy.types.Scene, plan: Plan) -> None:
+    """Forget what is kept of a scene once it is not what would be cut."""
+    if is_kept(scene) and _holder(scene)[KEPT] != _state(scene, plan):
+        forget_kept(scene)
+
+
+def _state(scene: bpy.types.Scene, plan: Plan) -> str:
+    """What a plan's cut depends on on the present frame, as a short text: shapes, places and all that faces carry."""
+    state = sha256(_described(plan).encode())
+    depsgraph = scene.view_layers[0].depsgraph
+    for obj in plan.numbers():
+        state.update(np.ascontiguousarray(obj.matrix_world))
+        state.update(content_of(obj.evaluated_get(depsgraph).data))
+    for place in sorted(told_layers(plan)):
+        inputs = dielectric_node(plan.layers[place].material).inputs
+        state.update(repr([_plain_value(inputs[name].default_value) for name in values_of(plan.layers[place])]).encode())
+    return state.hexdigest()
+
+
+def _plain_value(value):
+    return value if isinstance(value, (bool, int, float)) else tuple(value)
+
+
+def _surfaces(scene: bpy.types.Scene) -> dict[bpy.types.Object, bpy.types.Object]:
+    """The objects that show media in renders, by the media."""
+    collection = _find_collection(scene)
+    found = collection.objects if collection is not None else ()
+    return {obj[CUT_OF]: obj for obj in found if isinstance(obj.get(CUT_OF), bpy.types.Object)}
+
+
+def _holder(scene: bpy.types.Scene) -> bpy.types.Object | None:
+    """The object whose modifier cuts."""
+    collection = _find_collection(scene)
+    return next((obj for obj in collection.objects if PLAN in obj), None) if collection is not None else None
+
+
+def _exchange_mesh(surface: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
+    before, surface.data = surface.data, mesh
+    bpy.data.meshes.remove(before)
 
 
 def show_strays() -> None:
@@ -487,6 +598,9 @@ def _ensure_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
 
 def _show(scene: bpy.types.Scene, plan: Plan) -> None:
     """Let renders show what a plan cuts in place of the artist's objects."""
+    if not plan.layers:
+        _clear(scene)
+        return
     numbers = plan.numbers()
     collection = _ensure_collection(scene)
     surfaces = {}
@@ -595,10 +709,16 @@ def _drive(
 
 def _set_inputs(modifier: bpy.types.NodesModifier, values: dict) -> None:
     for name, value in values.items():
-        socket = getattr(modifier.properties.inputs, modifier.node_group.interface.items_tree[name].identifier)
+        socket = _input_of(modifier, name)
         if socket.value != value:
             socket.value = value
             modifier.id_data.update_tag()
+
+
+def _input_of(modifier: bpy.types.NodesModifier, name: str) -> bpy.types.bpy_struct:
+    tree = modifier.node_group.interface.items_tree
+    socket = next(item for item in tree if item.item_type == "SOCKET" and item.in_out == "INPUT" and item.name == name)
+    return getattr(modifier.properties.inputs, socket.identifier)
 
 
 def _new_surface(

@@ -52,6 +52,8 @@ BODY_GROUP = "Nested Dielectric Cut Body"
 CUT_GROUP = "Nested Dielectric Cut"
 
 OWN_INPUT, CUT_INPUT, BODY_INPUT, END_INPUT = "Medium", "Cut", "Body", "End"
+KEPT_INPUT, FRAME_INPUT = "Kept", "Frame"
+"""Whether the object's own mesh is its surface as it is on a frame, and on which."""
 
 VALUES = {
     "IOR": "NodeSocketFloat",
@@ -286,7 +288,13 @@ def ensure_surface_tree() -> bpy.types.NodeTree:
     tree = _find_tree(SURFACE_GROUP)
     if tree is not None:
         return tree
-    inputs = {OWN_INPUT: "NodeSocketObject", CUT_INPUT: "NodeSocketObject", BODY_INPUT: "NodeSocketInt"}
+    inputs = GEOMETRY | {
+        OWN_INPUT: "NodeSocketObject",
+        CUT_INPUT: "NodeSocketObject",
+        BODY_INPUT: "NodeSocketInt",
+        KEPT_INPUT: "NodeSocketBool",
+        FRAME_INPUT: "NodeSocketInt",
+    }
     tree = _new_tree(SURFACE_GROUP, inputs, GEOMETRY, "A medium's surface as far as it exists, cut where others cross it")
     tree.is_modifier = True
     build = _Builder(tree)
@@ -298,7 +306,13 @@ def ensure_surface_tree() -> bpy.types.NodeTree:
     faces = build.node("GeometryNodeRealizeInstances", Geometry=picked).outputs[0]
     shown = build.joined([first.outputs["Selection"], faces])
     smooth = build.count(shown, "FACE", build.tree.nodes.new("GeometryNodeInputShadeSmooth").outputs[0])
-    build.returns(Geometry=build.switch(build.compare(smooth, "GREATER_THAN", 0.5, "FLOAT"), shown, _with_normals(build, shown, cut)))
+    shown = build.switch(build.compare(smooth, "GREATER_THAN", 0.5, "FLOAT"), shown, _with_normals(build, shown, cut))
+    frame = _output(build.tree.nodes.new("GeometryNodeInputSceneTime"), "Frame")
+    then = build.node("FunctionNodeCompare", properties={"data_type": "FLOAT", "operation": "EQUAL"}, A=frame)
+    build.put(_input(then, "B"), build.inputs.outputs[FRAME_INPUT])
+    _input(then, "Epsilon").default_value = 1e-3
+    kept = build.all_of((build.inputs.outputs[KEPT_INPUT], then.outputs[0]))
+    build.returns(Geometry=build.switch(kept, shown, build.inputs.outputs["Geometry"]))
     return tree
 
 

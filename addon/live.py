@@ -85,6 +85,12 @@ def update_cut(scene: bpy.types.Scene) -> cutting.Cut:
     return cutting.cut_surfaces(scene, scripted=any(frame_scripts()))
 
 
+def keep_cut(scene: bpy.types.Scene) -> str:
+    """Keep the cut of the present frame in the file; return why that cannot be, or nothing."""
+    update_cut(scene)
+    return cutting.keep_in_file(scene, scripted=any(frame_scripts()))
+
+
 def _cut_scenes() -> list[bpy.types.Scene]:
     return [scene for scene in bpy.data.scenes if cutting.is_cut(scene) and scene.library is None]
 

@@ -6,8 +6,10 @@ import bpy
 
 from .analysis import clear_analysis, is_analysed
 from .compatibility import UnsupportedError
+from .cutting import forget_kept, is_cut, set_cut
+from .live import keep_cut, update_cut
 from .media import all_objects
-from .polls import supported
+from .polls import has_media, supported
 from .preparation import prepare, put_back
 from .report import last_report
 from .selecting import frame_selected, instancers, select_only
@@ -35,7 +37,7 @@ class Prepare(bpy.types.Operator):
             return {"CANCELLED"}
         for change in preparation.changes or ("Nothing to change",):
             self.report({"INFO"}, change)
-        for line in str(preparation.found).splitlines():
+        for line in (*str(preparation.cut).splitlines(), *str(preparation.found).splitlines()):
             self.report({"INFO"}, line)
         for problem in preparation.problems[:MOST_REPORTS]:
             self.report({"WARNING"}, str(problem))
@@ -63,6 +65,60 @@ class PutBack(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         for change in put_back(context.scene) or ("Nothing to put back",):
             self.report({"INFO"}, change)
+        return {"FINISHED"}
+
+
+class CutSurfaces(bpy.types.Operator):
+    """Let renders show the surfaces of media cut where they cross, each face between two known media: as fast as meshes that are
+    split by hand. Objects, modifiers and the viewport stay as they are; each frame takes the time to cut it. Again to switch it
+    off
+    """
+
+    bl_idname = "nested_dielectric.cut_surfaces"
+    bl_label = "Cut Surfaces"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return supported(cls) and (is_cut(context.scene) or has_media(cls, context))
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        scene = context.scene
+        set_cut(scene, not is_cut(scene))
+        if not is_cut(scene):
+            self.report({"INFO"}, "Renders show the objects as they are")
+            return {"FINISHED"}
+        for line in str(update_cut(scene)).splitlines() or ["Nothing crosses, so nothing is cut"]:
+            self.report({"INFO"}, line)
+        return {"FINISHED"}
+
+
+class KeepCut(bpy.types.Operator):
+    """Keep the cut of this frame in the file, so that whoever renders this frame has nothing to cut; other frames are cut as ever.
+    Moving or changing a medium, or this again, takes it back
+    """
+
+    bl_idname = "nested_dielectric.keep_cut"
+    bl_label = "Keep in File"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not is_cut(context.scene):
+            cls.poll_message_set("Switch Cut Surfaces on first")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        scene = context.scene
+        if forget_kept(scene):
+            self.report({"INFO"}, "Every frame is cut as it is rendered")
+            return {"FINISHED"}
+        reason = keep_cut(scene)
+        if reason:
+            self.report({"WARNING"}, f"Every frame is cut as it is rendered: {reason}")
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"The cut of frame {scene.frame_current} is in the file")
         return {"FINISHED"}
 
 
@@ -134,4 +190,4 @@ class ClearAnalysis(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (Prepare, PutBack, ShowProblem, ClearAnalysis)
+CLASSES = (Prepare, PutBack, CutSurfaces, KeepCut, ShowProblem, ClearAnalysis)

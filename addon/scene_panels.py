@@ -8,6 +8,7 @@ import bpy
 
 from .analysis import is_analysed, last_found
 from .compatibility import blender_note, blender_problem
+from .cutting import is_cut, is_kept, last_cut
 from .drawing import ObjectProperties, Sidebar, draw_alert, draw_text
 from .icons import ready_icon
 from .materials import medium_material, parameter_socket, unchanged_nodes
@@ -18,7 +19,7 @@ from .notices import render_problem
 from .operators import UpdateMaterials
 from .parameters import GROUP_NAME, PRIORITY_PROPERTY
 from .preparation import taken_back
-from .preparation_operators import ClearAnalysis, Prepare, PutBack, ShowProblem
+from .preparation_operators import ClearAnalysis, CutSurfaces, KeepCut, Prepare, PutBack, ShowProblem
 from .preset_menus import draw_presets
 from .priorities import in_words
 from .priority_operators import OpenMaterial, PriorityMove, PriorityOwn, SelectObjects, SpaceOut
@@ -28,6 +29,9 @@ from .versions import outdated_materials, version_problems
 
 OPEN_PROBLEMS = 1
 """Problems whose remedies are shown before they are asked for."""
+
+MOST_LINES = 20
+"""Media that are not cut whose reasons are listed."""
 
 NAME_WIDTH = 0.68
 """Part of a row that a name takes; the rest holds a priority of four digits at the default width of the sidebar."""
@@ -121,6 +125,7 @@ def draw(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Everything a panel shows, for the Object properties and the 3D view alike."""
     draw_problem(layout, context)
     draw_preparation(layout, context)
+    draw_cut(layout, context)
     draw_media(layout, context)
     draw_active(layout, context)
 
@@ -212,6 +217,29 @@ def draw_changes(layout: bpy.types.UILayout, context: bpy.types.Context, report:
     header.operator(PutBack.bl_idname, icon="LOOP_BACK")
     for line in lines if body is not None else ():
         draw_text(body, context, line, "DOT")
+
+
+def draw_cut(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The switch of whether surfaces are cut in renders, and what cannot be and why."""
+    scene = context.scene
+    cut = is_cut(scene)
+    if not cut and not listed_media(scene).rows:
+        return
+    row = layout.row(align=True)
+    row.operator(CutSurfaces.bl_idname, icon="CHECKBOX_HLT" if cut else "CHECKBOX_DEHLT", depress=cut)
+    if cut:
+        row.operator(KeepCut.bl_idname, depress=is_kept(scene))
+    found = last_cut(scene)
+    if found is None or not found.asking:
+        return
+    header, body = layout.panel("nested_dielectric_uncut", default_closed=True)
+    header.label(text=f"{len(found.asking)} of {len(found.asking) + len(found.media)} Not Cut", icon="INFO")
+    for name, reason in found.asking[:MOST_LINES] if body is not None else ():
+        row = body.row()
+        row.operator(ShowProblem.bl_idname, text=name, icon="VIEWZOOM").name = name
+        draw_text(body, context, reason, "DOT")
+    if body is not None and len(found.asking) > MOST_LINES:
+        body.label(text=f"And {len(found.asking) - MOST_LINES} more", icon="BLANK1")
 
 
 def draw_media(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from hashlib import sha256
+
 import bpy
 import numpy as np
 
@@ -34,6 +36,24 @@ def triangles_of(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     else:
         mesh.loop_triangles.foreach_get("vertices", triangles.reshape(-1))
     return vertices, triangles
+
+
+_NUMBERS = {"FLOAT": np.float32, "INT": np.int32, "BOOLEAN": np.bool_}
+
+
+def content_of(mesh: bpy.types.Mesh) -> bytes:
+    """Return a digest of all numbers that a mesh carries, SHA-256."""
+    digest = sha256()
+    for attribute in mesh.attributes:
+        if not len(attribute.data) or attribute.name.startswith((".select", ".hide")):
+            continue
+        value = next(prop for prop in attribute.data[0].bl_rna.properties if prop.identifier != "rna_type")
+        if value.type in _NUMBERS:
+            numbers = np.empty(len(attribute.data) * max(value.array_length, 1), dtype=_NUMBERS[value.type])
+            attribute.data.foreach_get(value.identifier, numbers)
+            digest.update(attribute.name.encode())
+            digest.update(numbers)
+    return digest.digest()
 
 
 def thickness(obj: bpy.types.Object) -> float:
