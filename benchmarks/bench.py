@@ -31,15 +31,20 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import nested_dielectric as nd  # noqa: E402
 from bench_errors import Reference, block_means, floor, relative_error  # noqa: E402
-from bench_report import plot, renewed, tables  # noqa: E402
+from bench_report import plot, renew, tables  # noqa: E402
 from bench_scenes import DISPERSING, SCENES, BenchScene  # noqa: E402
-from bench_worker import WAVELENGTHS, Built, Cost, Worker, save  # noqa: E402
+from bench_worker import CUT, WAVELENGTHS, Built, Cost, Worker, save  # noqa: E402
 from hand_split import Piece, Split, split  # noqa: E402
 from scenes import BOUNCES  # noqa: E402
 
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
 OUT = HERE.parent / "out" / "bench"
+
+PICTURE = """Error against time in iced water; dotted, the floor. The other scenes stand beside it in `results/`.
+
+![Error against time in iced water](results/iced_water.png)"""
+"""Of the page, below its tables."""
 
 REFERENCE_SEED = 1000
 
@@ -60,7 +65,7 @@ class Plan:
     `seconds` on the wall for all scenes; pixels along a side; least and most samples of a curve, powers of two, and the
     ratio from one point to the next; pictures of as many samples that the reference is the mean of; CPU seconds that a
     timed picture of hand-split Glass takes at least; rounds of timing; times that every scene is prepared; whether
-    media without analysis and peers are compared, too.
+    peers are compared, too.
     """
 
     seconds: float
@@ -72,7 +77,6 @@ class Plan:
     timed: float
     rounds: int
     preparations: int
-    without_analysis: bool
     peers: bool
 
     def counts(self, samples: int) -> list[int]:
@@ -80,8 +84,8 @@ class Plan:
         return sorted({self.step**power for power in range(10) if self.step**power < samples} | {samples})
 
 
-FULL = Plan(1620.0, 128, 16, 256, 2, 8, 1.0, 9, 4, without_analysis=True, peers=True)
-QUICK = Plan(130.0, 64, 8, 16, 8, 4, 0.2, 3, 1, without_analysis=False, peers=False)
+FULL = Plan(1620.0, 128, 16, 256, 2, 8, 1.0, 9, 4, peers=True)
+QUICK = Plan(130.0, 64, 8, 16, 8, 4, 0.2, 3, 1, peers=False)
 
 
 # Measuring ----------------------------------------------------------------------------------------------------------
@@ -92,7 +96,7 @@ def measure(name: str, plan: Plan, deadline: float) -> dict:
     begin = time.monotonic()
     with ExitStack() as stack:
         disperses = name in DISPERSING
-        workers = {way: stack.enter_context(closing(Worker(way))) for way in ways(disperses, plan.without_analysis)}
+        workers = {way: stack.enter_context(closing(Worker(way))) for way in ways(disperses)}
         scene, parts = loaded(name)  # while the processes start
         if parts.hidden:
             workers["passed"] = stack.enter_context(closing(Worker("passed")))
@@ -153,12 +157,9 @@ def measure(name: str, plan: Plan, deadline: float) -> dict:
     }
 
 
-def ways(disperses: bool, without_analysis: bool) -> list[str]:
+def ways(disperses: bool) -> list[str]:
     """Ways that Cycles renders a scene in. Where media disperse none overlap: naive Glass is hand-split Glass."""
-    kinds = ["split", "ours"] if disperses else ["naive", "split", "ours"]
-    if without_analysis:
-        kinds.append("ours_no_analysis")
-    return kinds + ["brute"] * disperses
+    return ["split", *CUT, "brute"] if disperses else ["naive", "split", *CUT]
 
 
 def interleaved(workers: Mapping[str, Worker], ask: Callable[[Worker], object], place: int) -> dict:
@@ -401,8 +402,7 @@ def main() -> None:
     if arguments.quick:
         print(tables(results))
     else:
-        readme = HERE / "README.md"
-        readme.write_text(renewed(readme.read_text(), tables(read_results(RESULTS))))
+        renew("tables", f"{tables(read_results(RESULTS))}\n\n{PICTURE}")
     print(f"{time.monotonic() - start:.0f} s; {folder}")
 
 

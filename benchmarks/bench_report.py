@@ -12,24 +12,27 @@ from matplotlib.ticker import NullFormatter
 
 from bench_errors import Floor
 
-BEGIN, END = "<!-- tables: begin -->", "<!-- tables: end -->"
+README = Path(__file__).resolve().parent / "README.md"
 
 LABELS = {
     "naive": "naive Glass",
     "split": "hand-split Glass",
     "passed": "Glass and hidden faces",
-    "ours": "nested dielectrics",
-    "ours_no_analysis": "without analysis",
+    "cut": "cut surfaces",
+    "asking": "asking the scene",
     "brute": "one render a wavelength",
     "luxcore": "LuxCore",
     "mitsuba": "Mitsuba",
 }
 
+NESTED = ("cut", "asking")
+"""Ways of nested dielectrics."""
+
 STYLES = {
     "naive": {"color": "tab:red"},
     "split": {"color": "black"},
-    "ours": {"color": "tab:blue"},
-    "ours_no_analysis": {"color": "tab:cyan", "linestyle": "--"},
+    "cut": {"color": "tab:blue"},
+    "asking": {"color": "tab:cyan", "linestyle": "--"},
     "brute": {"color": "tab:gray"},
     "luxcore": {"color": "tab:green"},
     "mitsuba": {"color": "tab:orange"},
@@ -87,13 +90,19 @@ def tables(results: Sequence[dict]) -> str:
     return "\n\n".join((time_table(results), cost_table(results), error_table(results), *remarks(results)))
 
 
-def renewed(text: str, content: str) -> str:
-    """A page with other tables between its two marks."""
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
+def renew(name: str, content: str) -> None:
+    """Write other content between two marks of README.md."""
+    README.write_text(renewed(README.read_text(), name, content))
+
+
+def renewed(text: str, name: str, content: str) -> str:
+    """A page with other content between its two marks of that name."""
+    first, last = f"<!-- {name}: begin -->", f"<!-- {name}: end -->"
+    before, begin, rest = text.partition(first)
+    _, end, after = rest.partition(last)
     if not begin or not end:
-        raise ValueError(f"the page needs the lines {BEGIN} and {END}")
-    return f"{before}{BEGIN}\n\n{content}\n\n{END}{after}"
+        raise ValueError(f"the page needs the lines {first} and {last}")
+    return f"{before}{first}\n\n{content}\n\n{last}{after}"
 
 
 def markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -131,32 +140,35 @@ def ratio_cell(way: dict | None) -> str:
 
 def cost_table(results: Sequence[dict]) -> str:
     """Preparation and memory."""
-    header = ["CPU s and MB", "Glass: first sample", "again", "ours: prepare", "first sample", "again"]
-    header += ["Glass, MB", "ours, MB"]
+    header = ["CPU s and MB", "Glass: first sample", "again", "MB"]
+    for way in NESTED:
+        header += [f"{LABELS[way]}: prepare", "first sample", "again", "MB"]
     rows = []
     for result in results:
-        glass, ours = (result["preparation"][way] for way in ("split", "ours"))
-        again = [result["timing"]["ways"][way]["again_cpu"] for way in ("split", "ours")]
-        seconds = (
-            glass["first_render"]["cpu"],
-            again[0],
-            ours["prepare"]["cpu"],
-            ours["first_render"]["cpu"],
-            again[1],
-        )
-        megabytes = (result["memory"][way]["scene"] for way in ("split", "ours"))
-        rows.append([result["title"], *(f"{value:.2f}" for value in seconds), *(f"{value:.0f}" for value in megabytes)])
+        cells = cost_cells(result, "split")[1:]
+        for way in NESTED:
+            cells += cost_cells(result, way)
+        rows.append([result["title"], *cells])
     return markdown(header, rows)
+
+
+def cost_cells(result: dict, way: str) -> list[str]:
+    """CPU seconds of preparing, of the first sample and of what a further render costs besides samples, and MB."""
+    preparation = result["preparation"][way]
+    seconds = [preparation[step]["cpu"] for step in ("prepare", "first_render")]
+    seconds.append(result["timing"]["ways"][way]["again_cpu"])
+    return [*(f"{value:.2f}" for value in seconds), f"{result['memory'][way]['scene']:.0f}"]
 
 
 def error_table(results: Sequence[dict]) -> str:
     """Errors at the most samples, and what is left without noise."""
     floored = [way for way in LABELS if way != "split" and any(way in result["errors"] for result in results)]
-    header = ["Error (relMSE) × 10⁶", "samples", "Glass", "ours", *(f"floor: {LABELS[way]}" for way in floored)]
+    header = ["Error (relMSE) × 10⁶", "samples", "Glass", *(LABELS[way] for way in NESTED)]
+    header += [f"floor: {LABELS[way]}" for way in floored]
     rows = []
     for result in results:
         errors = result["errors"]
-        last = [errors[way]["points"][-1] for way in ("split", "ours")]
+        last = [errors[way]["points"][-1] for way in ("split", *NESTED)]
         cells = [floor_cell(errors[way]["floor"]) if way in errors else "" for way in floored]
         rows.append([result["title"], str(last[0]["samples"]), *(millionths(p["relmse"]) for p in last), *cells])
     return markdown(header, rows)
@@ -174,17 +186,17 @@ def millionths(value: float) -> str:
 
 
 def remarks(results: Sequence[dict]) -> list[str]:
-    """Where ours is better than naive Glass ever gets."""
+    """Where cut surfaces are better than naive Glass ever gets."""
     found = []
     for result in results:
         if "naive" not in result["errors"]:
             continue
         lowest = Floor(**result["errors"]["naive"]["floor"])
         if lowest.certain:
-            samples = samples_for(result["errors"]["ours"]["points"], lowest.relmse)
+            samples = samples_for(result["errors"]["cut"]["points"], lowest.relmse)
             found.append(
-                f"- {result['title']}: nested dielectrics are as good as naive Glass with any number of samples after "
-                f"{samples:.3g} samples, {samples * seconds_per_sample(result, 'ours'):.2g} CPU seconds."
+                f"- {result['title']}: cut surfaces are as good as naive Glass with any number of samples after "
+                f"{samples:.3g} samples, {samples * seconds_per_sample(result, 'cut'):.2g} CPU seconds."
             )
     return ["\n".join(found)] if found else []
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import cos, pi, radians, sin
+from itertools import pairwise
+from math import cos, pi, radians, sin, sqrt
 from pathlib import Path
 
 import bpy  # before bmesh and mathutils, which live inside it
@@ -235,9 +236,9 @@ PANE = 2.0
 """Width and height of the pane."""
 
 
-def droplet_places(random: np.random.Generator) -> list[tuple[float, float, float]]:
-    """X, Z and radius of each droplet on the pane, apart from each other; large ones first."""
-    radii = np.sort(0.018 + 0.042 * random.random(DROPLETS) ** 3)[::-1]
+def droplet_places(random: np.random.Generator, count: int) -> list[tuple[float, float, float]]:
+    """X, Z and radius of each droplet on the pane, apart from each other; large ones first. More of them are smaller."""
+    radii = np.sort(0.018 + 0.042 * random.random(count) ** 3)[::-1] * min(1.0, sqrt(DROPLETS / count))
     places: list[tuple[float, float, float]] = []
     for radius in radii:
         while True:
@@ -248,17 +249,17 @@ def droplet_places(random: np.random.Generator) -> list[tuple[float, float, floa
     return places
 
 
-def droplets() -> BenchScene:
+def droplets(count: int = DROPLETS) -> BenchScene:
     """Flattened drops on the front of an upright pane, reaching a little into it. All are one shape."""
     half, depth = PANE / 2.0, 0.08
     pane = Body("Pane", *box((-half, 0.0, -half), (half, depth, half)), GLASS_PRIORITY, GLASS)
     shape = moved(ball(3), (0.0, 0.0, 0.0), (1.0, 0.55, 1.0))
     drops = tuple(
         Body(f"Droplet {place}", *moved(shape, (x, -0.2 * radius, z), radius), WATER_PRIORITY, WATER)
-        for place, (x, z, radius) in enumerate(droplet_places(np.random.default_rng(1)))
+        for place, (x, z, radius) in enumerate(droplet_places(np.random.default_rng(1), count))
     )
     view = View((0.5, -3.6, 0.4), (0.012, 0.0, 0.003), 36.0)
-    return BenchScene("droplets", "500 droplets on a pane", (pane, *drops), view, banded_sky(), True)
+    return BenchScene("droplets", f"{count:,} droplets on a pane", (pane, *drops), view, banded_sky(), True)
 
 
 SHELLS = 12
@@ -331,6 +332,63 @@ def bucket() -> BenchScene:
     )
     view = View((0.0, -6.2, 2.6), (0.012, 0.0, 1.12), 25.0)
     return BenchScene("bucket", "a bottle in a bucket of ice and water", bodies, view, banded_sky(), True)
+
+
+FACETED_SEGMENTS = 48
+FACETED_TUMBLER: tuple[iced_water.Point, ...] = (
+    (0.0, 0.0),
+    (0.38, 0.0),
+    (0.46, 1.0),
+    (0.42, 1.0),
+    (0.335, 0.15),
+    (0.0, 0.15),
+)
+FACETED_WATER: tuple[iced_water.Point, ...] = ((0.0, 0.142), (0.343, 0.142), (0.402, 0.74), (0.0, 0.74))
+"""The tumbler's inside grown by 0.008, up to the water's level."""
+
+
+def faceted(profile: Sequence[iced_water.Point]) -> tuple[np.ndarray, np.ndarray]:
+    """A profile from axis to axis turned around Z in few steps, each of its lines a single strip of faces."""
+
+    def build(bm):
+        vertices = [bm.verts.new((r, 0.0, z)) for r, z in profile]
+        edges = [bm.edges.new(pair) for pair in pairwise(vertices)]
+        bmesh.ops.spin(
+            bm,
+            geom=vertices + edges,
+            cent=(0.0, 0.0, 0.0),
+            axis=(0.0, 0.0, 1.0),
+            angle=2.0 * pi,
+            steps=FACETED_SEGMENTS,
+            use_merge=True,
+        )
+        bmesh.ops.remove_doubles(bm, verts=bm.verts, dist=1e-6)
+
+    return built(build)
+
+
+def faceted_scene() -> BenchScene:
+    """Water and three blocks of ice in a tumbler of few, large faces: all of them that touch a medium are crossed by
+    another, as the walls are single strips from foot to rim, and one block stands on the middle of the floor.
+    """
+    blocks = (
+        ((0.27, 0.27, 0.36), (0.02, 0.01, 0.325), Euler((0.0, 0.0, 0.37))),
+        ((0.23, 0.21, 0.19), (-0.185, -0.06, 0.655), Euler((0.09, -0.07, 0.25))),
+        ((0.21, 0.23, 0.19), (0.18, 0.05, 0.66), Euler((-0.06, 0.1, -0.4))),
+    )
+    ice = tuple(
+        Body(f"Ice {place}", *moved(turned(box(-Vector(size) / 2.0, Vector(size) / 2.0), turn), centre), ICE_PRIORITY, ICE)
+        for place, (size, centre, turn) in enumerate(blocks)
+    )
+    bodies = (
+        Body("Tumbler", *faceted(FACETED_TUMBLER), GLASS_PRIORITY, GLASS),
+        *ice,
+        Body("Water", *faceted(FACETED_WATER), WATER_PRIORITY, WATER),
+    )
+    view = View((0.0, -4.3, 1.75), (0.012, 0.0, 0.49), 17.0)
+    return BenchScene(
+        "faceted", "a tumbler of few, large faces with ice and water", bodies, view, banded_sky(), True
+    )
 
 
 Facet = tuple[float, float, float]
@@ -486,6 +544,7 @@ SCENES: dict[str, Callable[[], BenchScene]] = {
     "droplets": droplets,
     "shells": shells,
     "bucket": bucket,
+    "faceted": faceted_scene,
     "gems": gems,
     "import": imported_mesh,
 }

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import time
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -33,6 +33,9 @@ from scenes import add, add_camera, cycles_glass, native, new_scene, render  # n
 
 FIRST, LAST = "| Sample 0/", "| Finished"
 """What Cycles says before its first sample, when all is loaded and compiled, and after its last."""
+
+CUT = {"cut": True, "asking": False}
+"""Ways of nested dielectrics, and whether surfaces are cut."""
 
 WAVELENGTHS = 32
 """Renders that one picture by brute force is put together from, at most."""
@@ -65,16 +68,18 @@ class Worker:
     """A process that renders in one way.
 
     `way` is "naive": Cycles' Glass on overlapping bodies, each with its own index; "split": Cycles' Glass on hand-split
-    pieces; "passed": the same, with the surfaces that are inside a winner for a path to pass; "ours": nested dielectrics; "ours_no_analysis": without what prepare() knows of the scene; "brute": Glass on
-    hand-split pieces, one render a wavelength.
+    pieces; "passed": the same, with the surfaces that are inside a winner for a path to pass; "cut": nested dielectrics
+    whose surfaces are cut where media cross; "asking": those that ask the scene there; "brute": Glass on hand-split
+    pieces, one render a wavelength. `state` is the class of this process's :class:`State`, with its module.
     """
 
-    def __init__(self, way: str) -> None:
+    def __init__(self, way: str, state: str = "bench_worker.State") -> None:
         # Not by multiprocessing: it hands over sys.path with Blender's own folders, which hide the package bpy.
         # What Blender prints, from its import on, is kept out of the answers.
         task = (
             "import os, sys; answers = os.dup(1); os.dup2(os.open(os.devnull, os.O_WRONLY), 1); "
-            f"sys.path.insert(0, {str(HERE)!r}); import bench_worker; bench_worker.serve({way!r}, answers)"
+            f"sys.path.insert(0, {str(HERE)!r}); import bench_worker, {state.rpartition('.')[0]}; "
+            f"bench_worker.serve({state}({way!r}), answers)"
         )
         self._process = subprocess.Popen(
             [sys.executable, "-c", task], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
@@ -82,22 +87,23 @@ class Worker:
 
     def build(self, folder: Path, resolution: int) -> Built:
         """Build the scene that :func:`save` wrote and render its first sample."""
-        return self._ask("build", folder, resolution)
+        return self.ask("build", folder, resolution)
 
     def costs(self, samples: int) -> tuple[Cost, Cost]:
         """What a picture costs but for its samples, the scene being loaded, and what its samples cost."""
-        return self._ask("costs", samples)
+        return self.ask("costs", samples)
 
     def picture(self, samples: int, seed: int) -> np.ndarray:
         """A picture, (resolution, resolution, 3), the top row first."""
-        return self._ask("picture", samples, seed)
+        return self.ask("picture", samples, seed)
 
     def close(self) -> None:
         """End the process."""
         self._process.stdin.close()
         self._process.wait()
 
-    def _ask(self, command: str, *arguments):
+    def ask(self, command: str, *arguments):
+        """What a method of its :class:`State` returns."""
         write(self._process.stdin, (command, arguments))
         try:
             ok, answer = pickle.load(self._process.stdout)
@@ -123,10 +129,9 @@ def save(folder: Path, scene: BenchScene, split_up: Split) -> None:
         (folder / name).write_bytes(pickle.dumps((scene.view, scene.environment, parts)))
 
 
-def serve(way: str, answers: int) -> None:
+def serve(state: State, answers: int) -> None:
     """Answer commands on an open file until standard input is closed."""
     stream = os.fdopen(answers, "wb")
-    state = State(way)
     while True:
         try:
             command, arguments = pickle.load(sys.stdin.buffer)
@@ -154,8 +159,8 @@ class State:
         scene = new_scene(resolution)
         set_sky(environment)
         add_camera(view.location, view.target, angle=view.angle_degrees)
-        if self.way.startswith("ours"):
-            add_bodies(parts, nested)
+        if self.way in CUT:
+            self.add_media(parts)
         elif self.way == "naive":
             add_bodies(parts, lambda body: cycles_glass(body.ior))
         elif glass:
@@ -166,31 +171,19 @@ class State:
             add_hidden(pickle.loads((folder / HIDDEN).read_bytes())[-1])
         scene.render.use_persistent_data = True
         start = now()
-        if self.way.startswith("ours"):
-            nd.prepare(scene)
-        if self.way == "ours_no_analysis":
-            nd.clear_analysis(scene)
+        if self.way in CUT:
+            nd.prepare(scene, cut=CUT[self.way])
         prepared = now()
         draw(1, 0)
         return Built(prepared - start, now() - prepared, held("VmHWM"), self.before)
 
+    def add_media(self, bodies: Sequence[Body]) -> None:
+        """Objects of bodies as nested dielectrics."""
+        add_bodies(bodies, nested)
+
     def costs(self, samples: int) -> tuple[Cost, Cost]:
-        moments: dict[str, Cost] = {}
-
-        def listen(status: str) -> None:
-            for moment in (FIRST, LAST):
-                if moment in status:
-                    moments.setdefault(moment, now())
-
-        bpy.app.handlers.render_stats.append(listen)
         start = now()
-        try:
-            draw(samples, 0)
-        finally:
-            bpy.app.handlers.render_stats.remove(listen)
-        if len(moments) < 2:
-            raise RuntimeError(f"Cycles no longer says {FIRST!r} and {LAST!r}")
-        sampling = moments[LAST] - moments[FIRST]
+        sampling = sampling_of(lambda: draw(samples, 0))
         return (now() - start) - sampling, sampling
 
     def picture(self, samples: int, seed: int) -> np.ndarray:
@@ -210,6 +203,25 @@ class State:
                 material.node_tree.nodes["Glass BSDF"].inputs["IOR"].default_value = piece.ior_ratio
             picture = picture + draw(samples // count, 1000 * seed + place) * weights[place]
         return picture
+
+
+def sampling_of(draw: Callable[[], object]) -> Cost:
+    """What the samples of a picture cost."""
+    moments: dict[str, Cost] = {}
+
+    def listen(status: str) -> None:
+        for moment in (FIRST, LAST):
+            if moment in status:
+                moments.setdefault(moment, now())
+
+    bpy.app.handlers.render_stats.append(listen)
+    try:
+        draw()
+    finally:
+        bpy.app.handlers.render_stats.remove(listen)
+    if len(moments) < 2:
+        raise RuntimeError(f"Cycles no longer says {FIRST!r} and {LAST!r}")
+    return moments[LAST] - moments[FIRST]
 
 
 def draw(samples: int, seed: int) -> np.ndarray:
