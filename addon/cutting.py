@@ -124,6 +124,7 @@ def cut_surfaces(scene: bpy.types.Scene, scripted: bool = False) -> Cut:
     plan, found = make_plan(scene, scripted)
     _show(scene, plan)
     _drop_if_changed(scene, plan)
+    show_strays()
     _last[scene.session_uid] = found
     return found
 
@@ -593,6 +594,11 @@ def _ensure_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
         collection[CUT_OF] = True
         collection.hide_select = True
         scene.collection.children.link(collection)
+    shown = [each for layer in scene.view_layers for each in layer.layer_collection.children if each.collection == collection]
+    for owner, names in ((collection, ("hide_render",)), *((each, ("exclude", "holdout", "indirect_only")) for each in shown)):
+        for name in names:
+            if getattr(owner, name):
+                setattr(owner, name, False)
     return collection
 
 

@@ -393,13 +393,15 @@ def _ensure_body_tree() -> bpy.types.NodeTree:
     return tree
 
 
-def _bodies_tree(bodies: Sequence[tuple[bpy.types.Object, int]]) -> bpy.types.NodeTree:
-    """A group that reads some media."""
+def _bodies_tree(bodies: Sequence[tuple[bpy.types.Object, int]], overlapping: bool) -> bpy.types.NodeTree:
+    """A group that reads some media, as one body where they overlap."""
     tree = _new_tree(f"{BODY_GROUP}s", {}, GEOMETRY | {"Closed": "NodeSocketBool"}, "Media that are to be cut")
     build = _Builder(tree)
     read = [_body(build, obj, number) for obj, number in bodies]
+    geometries = [geometry for geometry, _ in read]
     build.returns(
-        Geometry=build.joined([geometry for geometry, _ in read]), Closed=build.all_of([closed for _, closed in read])
+        Geometry=_united_where_they_meet(build, geometries) if overlapping else build.joined(geometries),
+        Closed=build.all_of([closed for _, closed in read]),
     )
     return tree
 
@@ -412,13 +414,13 @@ def _body(build: _Builder, obj: bpy.types.Object, number: int) -> tuple[bpy.type
 
 
 def _read(
-    build: _Builder, bodies: Sequence[tuple[bpy.types.Object, int]]
+    build: _Builder, bodies: Sequence[tuple[bpy.types.Object, int]], overlapping: bool = False
 ) -> tuple[list[bpy.types.NodeSocket], list[bpy.types.NodeSocket]]:
     """Geometries of media, many of them in one, and whether these are closed."""
     if len(bodies) <= CHUNK:
         pairs = [_body(build, *body) for body in bodies]
     else:
-        trees = [_bodies_tree(bodies[start : start + CHUNK]) for start in range(0, len(bodies), CHUNK)]
+        trees = [_bodies_tree(bodies[start : start + CHUNK], overlapping) for start in range(0, len(bodies), CHUNK)]
         nodes = [build.node("GeometryNodeGroup", properties={"node_tree": tree}) for tree in trees]
         pairs = [(node.outputs["Geometry"], node.outputs["Closed"]) for node in nodes]
     return [geometry for geometry, _ in pairs], [closed for _, closed in pairs]
@@ -456,7 +458,7 @@ def make_cut_tree(plan: Plan) -> bpy.types.NodeTree:
     layers: dict[int, bpy.types.NodeSocket] = {}
     for place, layer in enumerate(plan.layers):
         if layer.crossing:
-            geometries, sound = _read(build, [(obj, numbers[obj]) for obj in layer.crossing])
+            geometries, sound = _read(build, [(obj, numbers[obj]) for obj in layer.crossing], layer.overlapping)
             closed += sound
             whole += geometries
             layers[place] = _united_where_they_meet(build, geometries) if layer.overlapping else build.joined(geometries)
