@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from time import process_time
 from typing import Any
 
 import bpy
@@ -29,6 +30,9 @@ FILE_FORMATS = {
 
 _CHANNELS = {"BW": 1, "RGB": 3, "RGBA": 3}
 """Fewest channels of a picture by its colour mode: WebP drops alpha that is 1 all over."""
+
+_SAMPLING = ("| Sample 0/", "| Finished")
+"""What Cycles says before its first sample, and after its last."""
 
 _SAMPLE = re.compile(r"Sample (\d+)/(\d+)")
 
@@ -97,6 +101,33 @@ def render_frame(
             raise RenderError(f"scene {scene.name!r}: the render was cancelled")
         check_picture(draft, output, _size(scene.render), _CHANNELS[scene.render.image_settings.color_mode])
     return absolute(output)
+
+
+def sampling_time(scene: bpy.types.Scene, samples: int, percentage: int) -> float:
+    """Return the seconds of CPU time that samples take at a percentage of a scene's resolution, without what comes before them.
+    Raises :class:`RenderError` if Cycles does not say when it begins and ends.
+    """
+    moments: dict[str, float] = {}
+
+    def listen(stats: object, *_: object) -> None:
+        for moment in _SAMPLING:
+            if moment in str(stats):
+                moments.setdefault(moment, process_time())
+
+    bpy.app.handlers.render_stats.append(listen)
+    try:
+        with (
+            _set(scene.render, resolution_percentage=percentage),
+            _set(scene.cycles, samples=samples, use_adaptive_sampling=False),
+            bpy.context.temp_override(scene=scene),
+        ):
+            bpy.ops.render.render()
+    finally:
+        bpy.app.handlers.render_stats.remove(listen)
+    if len(moments) < len(_SAMPLING):
+        raise RenderError("Cycles does not say when it samples")
+    begin, end = (moments[moment] for moment in _SAMPLING)
+    return end - begin
 
 
 def _require_renderable(scene: bpy.types.Scene) -> None:
