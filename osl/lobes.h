@@ -148,8 +148,8 @@ closure color lobe_closure(color reflection_tint, color transmission_tint, Lobe 
   return dielectric_bsdf(n, along, reflection_tint, transmission_tint, ax, ay, o.ior, distributions[lobe.distribution]);
 }
 
-/* Cycles leaves a smooth surface as it is. Where scattered light meets one it blurs it (Filter Glossy), leaves it out of caustics
- * or walks through it to lamps, and it turns a normal that would reflect light into its face, or nearly along it. */
+/* Cycles takes a smooth surface as it is here. Where scattered light meets one, Cycles blurs it (Filter Glossy), leaves it out of
+ * caustics or walks through it to lamps; and it turns a normal that would reflect light into its face, or nearly along it. */
 int stays_smooth(normal n)
 {
   return (raytype("camera") || raytype("singular")) && dot(reflect(-I, n), Ng) > 0.01;
