@@ -89,6 +89,21 @@ def test_extreme_indices_lose_what_cycles_own_glass_loses(ior):
     assert abs(loss) < 5e-4  # twice the standard error of the losses
 
 
+def test_coarse_smooth_normals_lose_what_they_lose_in_cycles_own_glass():
+    """Where the normal is far from the face's, refraction would leave on the side it came from, and is lost."""
+
+    def mean(material) -> float:
+        furnace(32)
+        add_sphere("Ball", 1.0, material(), segments=8)
+        add_camera((0, -5, 0.3), (0, 0, 0), angle=28)
+        return render(SAMPLES).mean()
+
+    loss = 1.0 - mean(lambda: nd.new_material("Ball", ior=1.5))
+    assert loss > 5e-3
+    # The same paths but for rounding.
+    assert loss == pytest.approx(1.0 - mean(lambda: cycles_glass(1.5)), abs=1e-4)
+
+
 def test_absorption_only_ever_takes_light():
     furnace(32)
     tint = {"transmittance": (0.9, 0.5, 0.1), "transmittance_depth": 0.5}
