@@ -57,6 +57,9 @@ KEPT = "nd_kept"
 HOLDER = "all"
 """In place of a medium: an object that shows none."""
 
+CUT_SETTING = "nd_cut_surfaces"
+"""Custom property of a scene: whether its surfaces are to be cut."""
+
 PLAN = "nd_plan"
 """Custom property of the object that holds the cut: what its nodes were made from."""
 
@@ -101,7 +104,7 @@ class Cut:
 
 def is_cut(scene: bpy.types.Scene) -> bool:
     """Tell whether a scene's surfaces are cut where media cross: a setting of the scene."""
-    return bool(scene.get(CUT))
+    return bool(scene.get(CUT_SETTING))
 
 
 def set_cut(scene: bpy.types.Scene, cut: bool) -> None:
@@ -110,8 +113,7 @@ def set_cut(scene: bpy.types.Scene, cut: bool) -> None:
     Nothing of the artist's is changed but that media are hidden from renders, which goes back.
     """
     if cut:
-        scene[CUT] = 1.0
-        scene.update_tag()
+        scene[CUT_SETTING] = True
     else:
         show_whole(scene)
 
@@ -141,15 +143,16 @@ def last_cut(scene: bpy.types.Scene) -> Cut | None:
 def show_whole(scene: bpy.types.Scene) -> bool:
     """Render the artist's own objects again; return whether they were not."""
     was_cut = is_cut(scene)
-    scene.pop(CUT, None)
+    scene.pop(CUT_SETTING, None)
     _clear(scene)
     _last.pop(scene.session_uid, None)
-    if was_cut:
-        scene.update_tag()
     return was_cut
 
 
 def _clear(scene: bpy.types.Scene) -> None:
+    if CUT in scene:
+        del scene[CUT]
+        scene.update_tag()
     collection = _find_collection(scene)
     if collection is not None:
         for obj in list(collection.objects):
@@ -607,6 +610,9 @@ def _show(scene: bpy.types.Scene, plan: Plan) -> None:
     if not plan.layers:
         _clear(scene)
         return
+    if scene.get(CUT) != 1.0:
+        scene[CUT] = 1.0
+        scene.update_tag()
     numbers = plan.numbers()
     collection = _ensure_collection(scene)
     surfaces = {}

@@ -86,7 +86,7 @@ ANALYSED = "nd_analysed"
 """Custom property of a scene whose media are kept analysed: what holds of its analysis, :class:`Validity`."""
 
 CUT = "nd_cut"
-"""Custom property of a scene whose surfaces are cut where media cross, and attribute of the faces of such surfaces."""
+"""Custom property of a scene that shows surfaces which are cut where media cross, and attribute of the faces of those."""
 
 CUT_PRIORITY, CUT_TINT, CUT_DEPTH, CUT_BY_VOLUME, CUT_CURVE, CUT_SELLMEIER_B, CUT_SELLMEIER_C = (
     f"nd_cut_{name}" for name in ("priority", "tint", "depth", "by_volume", "curve", "sellmeier_b", "sellmeier_c")
