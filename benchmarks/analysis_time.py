@@ -21,7 +21,7 @@ import nested_dielectric as nd  # noqa: E402
 from bench_report import markdown  # noqa: E402
 from bench_scenes import Body, ball, droplets, iced_water_scene  # noqa: E402
 from bench_worker import add_bodies, nested  # noqa: E402
-from nested_dielectric import analysis  # noqa: E402
+from nested_dielectric import analysis, live  # noqa: E402
 from scenes import new_scene  # noqa: E402
 
 STEPS = 5
@@ -68,21 +68,22 @@ def measured(title: str) -> list[float]:
     add_bodies(bodies, nested)
     scene.view_layers[0].update()
     first = milliseconds(lambda: nd.analyse(scene))
+    live.remove()
     scene.view_layers[0].update()
     obj = bpy.data.objects[name]
     steps: list[float] = []
 
-    def hold(_, depsgraph) -> None:
-        steps.append(milliseconds(lambda: analysis.hold(scene, depsgraph)))
+    def follow(_, depsgraph) -> None:
+        steps.append(milliseconds(lambda: analysis.follow_or_distrust(scene, depsgraph)))
 
-    bpy.app.handlers.depsgraph_update_post.append(hold)
+    bpy.app.handlers.depsgraph_update_post.append(follow)
     try:
         for _ in range(1 + STEPS):
             obj.location.x += 0.001
             scene.view_layers[0].update()
     finally:
-        bpy.app.handlers.depsgraph_update_post.remove(hold)
-    rest = milliseconds(lambda: analysis.settle(scene))
+        bpy.app.handlers.depsgraph_update_post.remove(follow)
+    rest = milliseconds(lambda: nd.analyse(scene))
     triangles = sum(len(body.triangles) for body in bodies)
     return [triangles, first, steps[0], statistics.median(steps[1:]), rest]
 
