@@ -644,7 +644,7 @@ def _sides(
     """
     i, j = _meeting(a.hierarchy, b.hierarchy, float(tolerance.max()), first, second)
     pair = _pairs_of(a, i, first, b, j, second)
-    touch, *coincident = _touching(a, i, b, j, pair, tolerance)
+    touch, coincident = _touching(a, i, b, j, pair, tolerance)
     sides = []
     for surfaces, bodies, others, partners, found in zip(
         (a, b), (first, second), (b, a), (second, first), coincident
@@ -900,7 +900,7 @@ def _children_meet(
 
 def _touching(
     a: _Surfaces, i: np.ndarray, b: _Surfaces, j: np.ndarray, pair: np.ndarray, tolerance: np.ndarray
-) -> tuple:
+) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray, np.ndarray]]]:
     """Which bodies cross, touch or coincide in pairs, and with which faces they coincide.
 
     :param i: (n,) triangles of a; j: those of b which may; pair: the pair of bodies to which both belong.
@@ -910,7 +910,7 @@ def _touching(
     """
     touch = np.zeros(len(tolerance), dtype=bool)
     if len(i) == 0:
-        return touch, *2 * [(_NO_FACES, _NOTHING.signs, _NOTHING.whole)]
+        return touch, 2 * [(_NO_FACES, _NOTHING.signs, _NOTHING.whole)]
     (keys_a, i), (keys_b, j) = (
         _numbered(pair * width + faces, len(tolerance) * width)
         for faces, width in ((i, a.corners.shape[1]), (j, b.corners.shape[1]))
@@ -926,7 +926,7 @@ def _touching(
     for keys, *other in ((keys_a, of_a, i, of_b, j), (keys_b, of_b, j, of_a, i)):
         faces, signs, whole = _coincident(*other, cosine, shared, tolerance)
         result.append((keys[faces], signs, whole))
-    return touch, *result
+    return touch, result
 
 
 def _triangles(place: _Placed, faces: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
 """Time on the wall of looking at a scene, and of what Blender waits for while one of its objects is moved.
 
 Run as ``.venv/bin/python benchmarks/analysis_time.py [ROUNDS]``. Printed for each scene: the first look at all of it, what a
-window waits for with every step of the mouse (the first step tells media to ask), and the look once the mouse rests; medians
-over the rounds, in milliseconds.
+window waits for with every step of the mouse (the first lets media ask), and the look once the mouse rests; medians over the
+rounds, in milliseconds.
 """
 
 import json
