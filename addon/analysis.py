@@ -1,10 +1,10 @@
 """Telling media what surrounds them, so that they need not ask the scene while it is rendered.
 
 :func:`analyse` looks at a scene's media as they are evaluated now and writes what holds whenever the file is rendered: into
-the sockets of a material where it holds for all of its objects, else into their custom properties, and into an attribute of
-a mesh where its faces differ. The shader needs nothing else of the extension. Whatever may be different in a render (things
-that move, modifiers that depend on more than their mesh, what is hidden in the viewport alone) leaves all media asking the
-scene, as they do without an analysis; and the shader checks a share of what it is told (osl/outside.h).
+the sockets of a material where it holds for all of its objects, else into their custom properties. The shader needs nothing
+else of the extension. What holds for part of a surface alone is told to nobody: media that cross ask. Whatever may be different
+in a render (things that move, modifiers that depend on more than their mesh, what is hidden in the viewport alone) leaves all
+media asking the scene, as they do without an analysis; and the shader checks a share of what it is told (osl/outside.h).
 
 What is told holds in the scene that was looked at, on the frame it showed then, and on all frames while somebody sees to it
 that no script changes the scene (:mod:`nested_dielectric.live`): elsewhere the materials themselves fall back to asking.
@@ -16,14 +16,13 @@ import hashlib
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple, dataclass, field, replace
 from functools import cache, cached_property
-from time import perf_counter
 
 import bpy
 import numpy as np
 
 from . import contacts, meshes
 from .charging import Filling, left_to_volumes
-from .contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Contact, Memory, Solid
+from .contacts import PROBE, Body, Contact, Memory, Solid
 from .foreign import is_clear, is_seen_by_all, lamp_box, sends_light_on
 from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
@@ -35,7 +34,6 @@ from .node_group import (
     BY_OBJECT,
     BY_VOLUME_SOCKET,
     CLEAR,
-    FACE_ATTRIBUTE,
     FOREIGN_SOCKET,
     GIVES_BACK_SOCKET,
     LEVEL_SOCKET,
@@ -108,17 +106,8 @@ VAGUE = 0.5
 the hull of any coarser one.
 """
 
-NEAR = 1e-3
-"""Margin around what has changed, which may touch what its box does not meet."""
-
 VELOCITY = "velocity"
 """Attribute of points by which Cycles moves them while the shutter is open."""
-
-MOST_TELLING = 0.03
-"""Seconds that telling media may take at each step of a move; where it takes longer, all media ask until the mouse rests."""
-
-PATIENCE = 0.03
-"""Seconds that one look at a scene may take while the mouse moves something in it."""
 
 HIGHEST_OBJECT_LEVEL = 2.0**17
 """Of an object's own; single precision keeps it and all that stands beside it."""
@@ -160,16 +149,14 @@ class Outside:
 class Found:
     """What an analysis found, by name of object, each in the order of the scene's media.
 
-    :param known: media that ask the scene nowhere.
-    :param partly: media that ask the scene only near crossings.
-    :param asking: media that ask the scene everywhere.
+    :param known: media that need not ask the scene.
+    :param asking: media that ask it.
     :param overlapping: media that overlap themselves.
     :param coincident: pairs of media with faces in the same place.
     :param doubts: why nothing is told to any medium, by name; empty where it is.
     """
 
     known: tuple[str, ...] = ()
-    partly: tuple[str, ...] = ()
     asking: tuple[str, ...] = ()
     overlapping: tuple[str, ...] = ()
     coincident: tuple[tuple[str, str], ...] = ()
@@ -181,7 +168,6 @@ class Found:
             f"{what}: {listed(names)}"
             for names, what in (
                 (self.known, "know what surrounds them"),
-                (self.partly, "know what surrounds them except near crossings"),
                 (() if self.doubts else self.asking, "ask the scene what surrounds them"),
                 (self.overlapping, "overlap themselves, which takes longer"),
             )
@@ -216,8 +202,6 @@ def clear_analysis(scene: bpy.types.Scene) -> None:
     for obj in bpy.data.objects:
         if not any(slot.material in told for slot in obj.material_slots):
             _tell_object(obj, None)
-            if obj.type == "MESH" and obj.mode == "OBJECT":
-                _tell_faces(obj.data, None)
 
 
 def analyse(scene: bpy.types.Scene) -> Found:
@@ -242,8 +226,13 @@ def trust(scene: bpy.types.Scene, every_frame: bool) -> None:
 
 def distrust(scene: bpy.types.Scene) -> None:
     """Let the media of an analysed scene ask until it is analysed again."""
-    _set_validity(scene, _Validity())
+    _set_validity(scene, replace(_validity(scene), holds=0.0))
     _of(scene).survey = None
+
+
+def is_distrusted(scene: bpy.types.Scene) -> bool:
+    """Whether an analysed scene has to be looked at again."""
+    return _of(scene).survey is None
 
 
 @dataclass(frozen=True)
@@ -279,43 +268,27 @@ def _frame(scene: bpy.types.Scene) -> float:
 
 def follow(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Analyse again after an update of a scene whose media are kept analysed, as far as the update reaches."""
-    survey = _updated(scene, depsgraph)
-    if survey is not None:
-        _look(survey)
+    changed = _changed(depsgraph)
+    if changed:
+        _look(_updated(scene, depsgraph, changed))
 
 
-def hold(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
-    """Make all that an update of a scene may concern ask the scene, which takes little time, and return whether
-    :func:`settle` is to be called once nothing moves any more.
-
-    What comes, goes or changes its nature is analysed at once. So is all if the last look at something new was quick, since
-    to ask is another shader, which a rendered view must compile.
+def follow_or_distrust(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Let all media ask after an update that changes any of them, which takes little time, and return whether they do. What
+    else an update changes is followed at once.
     """
-    survey = _updated(scene, depsgraph)
-    if survey is None:
+    changed = _changed(depsgraph)
+    if not changed:
         return False
     latest = _of(scene).survey
-    settled = latest and (latest.settled or latest)
-    if not settled or not survey.is_like(settled) or _of(scene).seconds < PATIENCE:
-        _look(survey)
-        return False
-    survey = replace(survey, contacts=settled.contacts, settled=settled)
-    if _of(scene).telling > MOST_TELLING:
-        _of(scene).survey = survey
-        _set_validity(scene, replace(_validity(scene), holds=0.0))
-    else:
-        _conclude(survey)
-    # What was told comes back as an update that changes no row.
-    return not all(map(_Row.is_same, latest.rows, survey.rows))
-
-
-def settle(scene: bpy.types.Scene) -> None:
-    """Analyse what :func:`hold` left, or all after :func:`distrust`."""
-    survey = _of(scene).survey
-    if survey is None:
-        analyse(scene)
-    elif survey.settled is not None:
-        _look(replace(survey, settled=None))
+    if latest is not None:
+        survey = _updated(scene, depsgraph, changed)
+        # What was told comes back as an update that changes no medium.
+        if survey.has_same_media(latest):
+            _look(survey)
+            return False
+    distrust(scene)
+    return True
 
 
 def forget_shapes() -> None:
@@ -352,20 +325,10 @@ _SHADING = (bpy.types.Material, bpy.types.ShaderNodeTree)
 @unchanged_nodes()
 def _look(survey: _Survey) -> Found:
     """Find the contacts of a survey, and tell the media."""
-    start = perf_counter()
     known = _of(survey.scene)
-    found = _conclude(replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], known.memory)))
-    if known.memory.looked_at:
-        known.seconds = perf_counter() - start
-    return found
-
-
-def _conclude(survey: _Survey) -> Found:
-    start = perf_counter()
+    survey = replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], known.memory))
     told = _outsides(survey)
     _tell(survey, told)
-    known = _of(survey.scene)
-    known.telling = perf_counter() - start
     known.survey, known.found = survey, _found(survey, told)
     _forget_unused()
     _set_validity(survey.scene, _Validity(1.0, _frame(survey.scene), _validity(survey.scene).every_frame))
@@ -416,19 +379,10 @@ class _Row:
     body: Body | None = None
     doubt: str = ""
 
-    def is_like(self, other: _Row) -> bool:
-        """Whether the other differs in place, shape and values at most."""
-        return (self.obj, self.medium, self.body is None, self.doubt) == (
-            other.obj,
-            other.medium,
-            other.body is None,
-            other.doubt,
-        )
-
     def is_same(self, other: _Row) -> bool:
         """Whether the same follows from the other."""
         return self is other or (
-            self.is_like(other)
+            (self.obj, self.doubt, self.body is None) == (other.obj, other.doubt, other.body is None)
             and np.array_equal(self.box, other.box)
             and (self.body is None or self.body.is_same(other.body))
         )
@@ -443,7 +397,6 @@ class _Survey:
     :param doubts: names and reasons.
     :param known: rows that may be made anew one by one, by the session's number of their objects; empty where objects are
         instanced.
-    :param settled: the survey whose contacts these are, if some rows have changed since.
     """
 
     scene: bpy.types.Scene
@@ -452,21 +405,11 @@ class _Survey:
     doubts: tuple[tuple[str, str], ...]
     known: dict[int, int]
     contacts: list[Contact]
-    settled: _Survey | None = None
 
-    def is_like(self, other: _Survey) -> bool:
-        """Whether rows of the other differ in place, shape and values at most."""
-        return (len(self.rows), self.doubts, self.facts.keys()) == (
-            len(other.rows),
-            other.doubts,
-            other.facts.keys(),
-        ) and all(map(_Row.is_like, self.rows, other.rows))
-
-    @cached_property
-    def changed(self) -> list[_Row]:
-        """Media whose place, shape or values are others than in the settled survey: as they were and as they are."""
-        pairs = zip(self.settled.rows, self.rows) if self.settled else ()
-        return [row for before, now in pairs if now.medium and not now.is_same(before) for row in (before, now)]
+    def has_same_media(self, other: _Survey) -> bool:
+        """Whether the media of another survey have the same places, shapes and values."""
+        first, second = ([row for row in survey.rows if row.medium] for survey in (self, other))
+        return (self.doubts, len(first)) == (other.doubts, len(second)) and all(map(_Row.is_same, first, second))
 
     @cached_property
     def bodies(self) -> list[_Row]:
@@ -499,13 +442,10 @@ class _Known:
     """What this session knows of a scene.
 
     :ivar survey: as it was looked at last; None if it has to be looked at anew.
-    :ivar seconds: how long the last look took for which meshes were compared; telling: how long it took to tell all media.
     """
 
     survey: _Survey | None = None
     found: Found | None = None
-    seconds: float = 0.0
-    telling: float = 0.0
     memory: Memory = field(default_factory=Memory)
 
 
@@ -549,14 +489,17 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     return _Survey(scene, rows, facts, tuple(doubts.items()), known, [])
 
 
-def _updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey | None:
-    """The survey after an update, without contacts; None if the update concerns nothing in it."""
+def _changed(depsgraph: bpy.types.Depsgraph) -> set[bpy.types.ID]:
+    """What has changed, as far as media may be concerned; meshes and objects of another shape are forgotten."""
     changed = {update.id.original: update for update in depsgraph.updates if isinstance(update.id, _CONCERNED)}
-    if not changed:
-        return None
     for data, update in changed.items():
         if update.is_updated_geometry or isinstance(data, bpy.types.Mesh):
             _shapes.pop(data.session_uid, None)
+    return set(changed)
+
+
+def _updated(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, changed: set[bpy.types.ID]) -> _Survey:
+    """The survey after an update, without contacts."""
     survey = _of(scene).survey
     if survey is None or not all(_is_known(survey, data) for data in changed):
         return _survey(scene, depsgraph)
@@ -667,7 +610,7 @@ def _body(
     if not solid.closed:
         raise _Doubt("is not closed")
     medium = (obj.name_full,) if facts.values is None else facts.values
-    return Body(solid, matrix, priority, medium, wants_faces=_wants_faces(obj)) if exact else None
+    return Body(solid, matrix, priority, medium) if exact else None
 
 
 def _solid(evaluated: bpy.types.Object) -> Solid:
@@ -686,9 +629,7 @@ def _solid(evaluated: bpy.types.Object) -> Solid:
 def _forget_unused() -> None:
     for gone in _scenes.keys() - {scene.session_uid for scene in bpy.data.scenes}:
         del _scenes[gone]
-    surveys = [known.survey for known in _scenes.values() if known.survey]
-    surveys += [survey.settled for survey in surveys if survey.settled]
-    kept = {id(row.body.solid) for survey in surveys for row in survey.bodies}
+    kept = {id(row.body.solid) for known in _scenes.values() if known.survey for row in known.survey.bodies}
     for shapes in (_shapes, _solids):
         for key in [key for key, solid in shapes.items() if id(solid) not in kept]:
             del shapes[key]
@@ -892,28 +833,10 @@ def _is_as_fine_in_renders(obj: bpy.types.Object) -> bool:
     )
 
 
-def _wants_faces(obj: bpy.types.Object) -> bool:
-    """Whether the faces of the mesh are those of the render, and may be written."""
-    return (
-        isinstance(obj.data, bpy.types.Mesh)
-        and obj.mode == "OBJECT"
-        and obj.data.shape_keys is None
-        and all(modifier.type == "NODES" for modifier in obj.modifiers)
-    )
-
-
 # Telling ------------------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class _Told:
-    """What an object is told; int8 codes of its faces if they differ."""
-
-    outside: Outside
-    faces: np.ndarray | None = None
-
-
-def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
+def _outsides(survey: _Survey) -> dict[bpy.types.Object, Outside]:
     """What each medium is told: what holds for all of its instances."""
     doubtful = bool(survey.doubts) or any(row.doubt for row in survey.rows if row.medium)
     boxes = np.array([row.box for row in survey.bodies]).reshape(-1, 2, 3)
@@ -922,30 +845,23 @@ def _outsides(survey: _Survey) -> dict[bpy.types.Object, _Told]:
     # Bodies of one priority that overlap are one: a ray may go from one to the next.
     priorities = np.array([row.body.priority for row in survey.bodies])
     foreign = np.isin(priorities, priorities[foreign])
-    unclear = [row.box for row in survey.vague] + [_grown(row.box, NEAR) for row in survey.changed]
-    near_unclear = _meets(boxes, unclear)
-    changed = {row.body.priority for row in survey.changed if row.body is not None}
-    asking = {
-        index
-        for index, contact in enumerate(survey.contacts)
-        if doubtful or near_unclear[index] or _speaks_of(survey, contact, changed)
-    }
+    near_unclear = _meets(boxes, [row.box for row in survey.vague])
+    asking = set(np.flatnonzero(near_unclear | doubtful).tolist())
     volumes, givers = _left_to_volumes(survey, boxes, asking)
-    told: dict[bpy.types.Object, list[_Told]] = {}
+    told: dict[bpy.types.Object, list[Outside]] = {}
     for index, (row, contact) in enumerate(zip(survey.bodies, survey.contacts)):
         if index in asking:
-            one = _Told(Outside(overlaps_itself=contact.robust or row in survey.changed))
+            one = Outside(overlaps_itself=contact.robust)
         else:
-            one = _told(survey, row, contact, bool(foreign[[index, *contact.partners]].any()), volumes)
+            one = _told(survey, contact, bool(foreign[[index, *contact.partners]].any()), volumes)
         told.setdefault(row.obj, []).append(one)
     for row in survey.rows:
         if row.medium and (row.body is None or _has_linked_material(row.obj, survey.facts)):
-            told[row.obj] = [_Told(Outside())]
+            told[row.obj] = [Outside()]
     merged = _merged(told)
     for obj in merged if volumes else ():
         material = _medium_of(survey, obj)
-        flags = {"by_volume": material in volumes, "gives_back": material in givers}
-        merged[obj] = replace(merged[obj], outside=replace(merged[obj].outside, **flags))
+        merged[obj] = replace(merged[obj], by_volume=material in volumes, gives_back=material in givers)
     return merged
 
 
@@ -1007,42 +923,12 @@ def _has_linked_material(obj: bpy.types.Object, facts: dict[bpy.types.Material, 
     return any(slot.material in facts and slot.material.library is not None for slot in obj.material_slots)
 
 
-def _speaks_of(survey: _Survey, contact: Contact, priorities: set[int]) -> bool:
-    """Whether a contact says anything of the bodies of some priorities."""
-    return (
-        contact.level in priorities
-        or (contact.around is not None and survey.bodies[contact.around].body.priority in priorities)
-        or not priorities.isdisjoint(contact.face_levels)
-    )
-
-
-def _merged(told: dict[bpy.types.Object, list[_Told]]) -> dict[bpy.types.Object, _Told]:
-    """What holds for all instances of an object, and of the faces of a mesh for all of its users."""
-    faces: dict[bpy.types.Mesh, np.ndarray] = {}
-    users: dict[bpy.types.Mesh, int] = {}
-    for obj, rows in told.items():
-        users[obj.data] = users.get(obj.data, 0) + 1
-        for codes in (row.faces for row in rows if row.faces is not None):
-            before = faces.get(obj.data, codes)
-            faces[obj.data] = np.where(before == codes, codes, PROBE)
-    busy = _busy(told)
-    faces = {
-        mesh: _by_polygon(mesh, codes)
-        for mesh, codes in faces.items()
-        if users[mesh] == mesh.users - mesh.use_fake_user and codes.any() and mesh not in busy and mesh.library is None
+def _merged(told: dict[bpy.types.Object, list[Outside]]) -> dict[bpy.types.Object, Outside]:
+    """What holds for all instances of an object."""
+    return {
+        obj: _common(rows) or Outside(overlaps_itself=any(row.overlaps_itself for row in rows))
+        for obj, rows in told.items()
     }
-    result = {}
-    for obj, rows in told.items():
-        outside = _common(row.outside for row in rows)
-        if outside is None or (outside.code == FACES and obj.data not in faces):
-            outside = Outside(overlaps_itself=any(row.outside.overlaps_itself for row in rows))
-        result[obj] = _Told(outside, faces.get(obj.data))
-    return result
-
-
-def _busy(objects: Iterable[bpy.types.Object]) -> set[bpy.types.ID]:
-    """Meshes that belong to the tool of another mode than Object Mode."""
-    return {obj.data for obj in objects if obj.mode != "OBJECT"}
 
 
 def _meets(boxes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
@@ -1053,42 +939,22 @@ def _meets(boxes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
     return meets
 
 
-def _told(survey: _Survey, row: _Row, contact: Contact, foreign: bool, volumes: set) -> _Told:
-    level = -1.0 if contact.level is None or contact.robust or survey.vague else float(contact.level)
+def _told(survey: _Survey, contact: Contact, foreign: bool, volumes: set) -> Outside:
+    """What a body is told whose neighbours are known."""
+    level = -1.0 if contact.level is None or survey.vague else float(contact.level)
     outside = Outside(contact.code, level, contact.robust, foreign)
-    faces = contact.faces
-    if faces is not None and survey.vague:
-        faces = np.where(faces >= LEVELS, PROBE, faces)
-    if contact.around is not None:
-        around = survey.bodies[contact.around].body
-        if len(around.medium) == 1 or around.priority in survey.mixed:
-            faces = None if faces is None else np.where(faces == MEDIUM, PROBE, faces)
-            outside = replace(outside, code=PROBE if contact.code == MEDIUM else contact.code)
-        else:
-            ior, transmittance, depth = around.medium
-            if _medium_of(survey, survey.bodies[contact.around].obj) in volumes:
-                transmittance = CLEAR
-            outside = replace(outside, medium=(float(around.priority), ior, depth), transmittance=transmittance)
-    return _Told(outside, faces)
+    if contact.around is None:
+        return outside
+    around = survey.bodies[contact.around].body
+    if len(around.medium) == 1 or around.priority in survey.mixed:
+        return replace(outside, code=PROBE)
+    ior, transmittance, depth = around.medium
+    if _medium_of(survey, survey.bodies[contact.around].obj) in volumes:
+        transmittance = CLEAR
+    return replace(outside, medium=(float(around.priority), ior, depth), transmittance=transmittance)
 
 
-def _by_polygon(mesh: bpy.types.Mesh, triangles: np.ndarray) -> np.ndarray:
-    """Codes of polygons whose triangles agree, or ask with one level where they are not in air; the others' are unknown."""
-    if len(triangles) == len(mesh.polygons):
-        return triangles
-    polygons = np.empty(len(triangles), dtype=np.int32)
-    mesh.calc_loop_triangles()
-    mesh.loop_triangle_polygons.foreach_get("value", polygons)
-    low = np.full(len(mesh.polygons), 127, dtype=np.int8)
-    high = np.zeros(len(low), dtype=np.int8)
-    np.minimum.at(low, polygons, triangles)
-    np.maximum.at(high, polygons, triangles)
-    mixed = np.zeros(len(low), dtype=bool)
-    mixed[polygons[(triangles != AIR) & (triangles != high[polygons])]] = True
-    return np.where((low == high) | ((high >= LEVELS) & ~mixed), high, PROBE).astype(np.int8)
-
-
-def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
+def _tell(survey: _Survey, told: dict[bpy.types.Object, Outside]) -> None:
     """Write what changed. A material speaks for its objects if all of them are told the same."""
     users: dict[bpy.types.Material, list[bpy.types.Object]] = {}
     for obj in told:
@@ -1102,22 +968,16 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> None:
     for material, objects in users.items():
         if material.library is not None or not survey.facts[material].can_be_told:
             continue
-        common = _common(told[obj].outside for obj in objects)
+        common = _common(told[obj] for obj in objects)
         if common is None:
             # What a linked object carries is its own file's. What concerns volumes is the same for all objects: a volume that
             # read it of each would be noisy.
-            first = told[objects[0]].outside
+            first = told[objects[0]]
             code = PROBE if any(obj.library is not None for obj in objects) else BY_OBJECT
             by_object = Outside(code, by_volume=first.by_volume, gives_back=first.gives_back)
         _tell_material(material, common or by_object, number, slots.get(material))
         for obj in objects:
-            _tell_object(obj, None if common else told[obj].outside)
-    if survey.settled:
-        return  # what asks needs no faces, and the faces of the others are as they were
-    busy = _busy(told)
-    for mesh, faces in {obj.data: one.faces for obj, one in told.items()}.items():
-        if isinstance(mesh, bpy.types.Mesh) and mesh not in busy:
-            _tell_faces(mesh, faces)
+            _tell_object(obj, None if common else told[obj])
 
 
 def _common(outsides: Iterable[Outside]) -> Outside | None:
@@ -1177,6 +1037,7 @@ def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
     """Write an object's custom properties, or with None remove them."""
     if obj.library is not None:
         return
+    _forget_faces(obj)
     values: tuple = (None, None)
     if outside is not None:
         values = ((_facts_in_one(outside), *outside.medium), outside.transmittance if outside.absorbs else None)
@@ -1205,44 +1066,16 @@ def _facts_in_one(outside: Outside) -> float:
     )
 
 
-def _faces_of(mesh: bpy.types.Mesh) -> np.ndarray | None:
-    """What a mesh tells its faces."""
-    attribute = mesh.attributes.get(FACE_ATTRIBUTE)
-    if attribute is None or not _tells_faces(attribute):
-        return None
-    faces = np.empty(len(mesh.polygons), dtype=np.int8)
-    attribute.data.foreach_get("value", faces)
-    return faces
+def _forget_faces(obj: bpy.types.Object) -> None:
+    """Take away what older versions told the faces of a mesh."""
+    mesh = obj.data
+    if isinstance(mesh, bpy.types.Mesh) and mesh.library is None and obj.mode == "OBJECT":
+        attribute = mesh.attributes.get(OBJECT_PROPERTIES[0])
+        if attribute is not None and (attribute.data_type, attribute.domain) == ("INT8", "FACE"):
+            mesh.attributes.remove(attribute)
 
 
-def _tells_faces(attribute: bpy.types.Attribute) -> bool:
-    """Whether an attribute of that name has the form that an analysis gives it."""
-    return (attribute.data_type, attribute.domain) == ("INT8", "FACE")
-
-
-def _tell_faces(mesh: bpy.types.Mesh, faces: np.ndarray | None) -> None:
-    """Write the attribute of a mesh's faces, or with None remove it."""
-    if mesh.library is not None:
-        return
-    before = _faces_of(mesh)
-    if faces is None:
-        if before is not None:
-            mesh.attributes.remove(mesh.attributes[FACE_ATTRIBUTE])
-            mesh.update_tag()
-        return
-    if before is None:
-        if FACE_ATTRIBUTE in mesh.attributes:
-            mesh.attributes.remove(mesh.attributes[FACE_ATTRIBUTE])
-        mesh.attributes.new(FACE_ATTRIBUTE, "INT8", "FACE")
-    if before is None or not np.array_equal(before, faces):
-        mesh.attributes[FACE_ATTRIBUTE].data.foreach_set("value", faces)
-        mesh.update_tag()
-
-
-def _found(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> Found:
-    def names(*codes: int) -> tuple[str, ...]:
-        return tuple(obj.name for obj, one in told.items() if one.outside.code in codes)
-
+def _found(survey: _Survey, told: dict[bpy.types.Object, Outside]) -> Found:
     pairs = {
         tuple(sorted((row.obj.name, survey.bodies[other].obj.name)))
         for row, contact in zip(survey.bodies, survey.contacts)
@@ -1250,10 +1083,9 @@ def _found(survey: _Survey, told: dict[bpy.types.Object, _Told]) -> Found:
     }
     doubts = survey.doubts + tuple((row.obj.name, row.doubt) for row in survey.rows if row.medium and row.doubt)
     return Found(
-        known=names(AIR, MEDIUM, NEVER),
-        partly=names(FACES),
-        asking=names(PROBE),
-        overlapping=tuple(obj.name for obj, one in told.items() if one.outside.overlaps_itself),
+        known=tuple(obj.name for obj, one in told.items() if one.code != PROBE),
+        asking=tuple(obj.name for obj, one in told.items() if one.code == PROBE),
+        overlapping=tuple(obj.name for obj, one in told.items() if one.overlaps_itself),
         coincident=tuple(sorted(pairs)),
         doubts=tuple(dict(doubts).items()),
     )

@@ -1,7 +1,7 @@
-"""Which media touch which: what lies around the faces of closed meshes that overlap. Arrays in, answers out.
+"""Which media touch which: what lies around closed meshes that overlap. Arrays in, answers out.
 
-A face away from all crossings has the same surroundings as its neighbours, so one winding number answers for a whole
-connected piece of a surface. Faces near a crossing stay unknown: rays must ask the scene there.
+A surface that no other crosses has the same surroundings everywhere, so one winding number answers for each connected
+component of it. What crosses stays unknown: rays must ask the scene there.
 """
 
 from __future__ import annotations
@@ -15,14 +15,9 @@ from mathutils.bvhtree import BVHTree
 
 from . import meshes
 
-# What is known of the outside of a face: nothing (ask the scene); it is air; it is the body's known surrounding medium;
-# a stronger or equal medium wins there, so the face never exists.
+# What is known of the outside of a body: nothing (ask the scene); it is air; it is the known surrounding medium; a stronger
+# or equal medium wins there, so the surface never exists.
 PROBE, AIR, MEDIUM, NEVER = 0, 1, 2, 3
-# A body's code: look at each face.
-FACES = 4
-# From here on a face's code: ask, but bodies of the priority that is left alone decide, as by Contact.level.
-LEVELS = 8
-HIGHEST_LEVEL = 127 - LEVELS
 
 # Surfaces closer than this touch, in sizes of the smaller body.
 TOLERANCE = 1e-5
@@ -40,8 +35,6 @@ HIGH = 1e300
 TABLE = 1 << 21
 # Boxes into which a long or flat island is cut at most, along its longest axis and the next.
 PIECES = (64, 8)
-# Part of a hierarchy's boxes from which on it is faster to look at all faces than at those in boxes.
-MANY = 8
 # Height above the centre, in sizes of the island, from which a face certainly looks away from it.
 LEAST_HEIGHT = 1e-6
 # Cosine of the largest angle between faces that coincide.
@@ -53,7 +46,6 @@ FLAT = 1e-3
 # Cosine of the largest angle between faces that a plane through an edge of one may part where no other does.
 NEARLY_PARALLEL = 0.9
 
-_COUNT = np.int32
 _NO_FACES = np.empty(0, dtype=np.intp)
 
 
@@ -136,16 +128,12 @@ class Body:
     :param matrix: (4, 4) from the mesh's space to the world's.
     :param priority: the lowest wins.
     :param medium: equal for bodies that are filled with the same.
-    :param certain: False where place or shape may differ in the render.
-    :param wants_faces: whether an answer by face is of use.
     """
 
     solid: Solid
     matrix: np.ndarray
     priority: int
     medium: Hashable
-    certain: bool = True
-    wants_faces: bool = True
 
     def is_same(self, other: Body) -> bool:
         """Whether it is the same solid in the same place with the same values."""
@@ -158,32 +146,22 @@ class Body:
 class Contact:
     """What is known of a body's outside.
 
-    :param code: PROBE, AIR, MEDIUM, NEVER, or FACES.
-    :param around: index of the body that is the known surrounding medium of code MEDIUM.
-    :param faces: (m,) int8, codes of the triangles where the code is FACES; LEVELS and more are theirs alone.
-    :param level: a priority that decides by itself: the first surface of that priority which a ray from the body meets
-        tells whether a body of that priority, and nothing else, holds the point.
+    :param code: PROBE, AIR, MEDIUM or NEVER.
+    :param around: index of a body that is the known surrounding medium of code MEDIUM.
+    :param level: of code PROBE, a priority that decides by itself: the first surface of that priority which a ray from the
+        body meets tells whether a body of that priority, and nothing else, holds the point.
     :param robust: it overlaps itself.
     :param partners: bodies whose surfaces cross it or that hold part of it.
     :param coincident: other bodies, this body's triangles that share part of a plane with their surface, +1 for each
         whose normal points the same way, -1 for the others, and whether each lies on that surface as a whole.
-    :param holders: bodies of the surrounding medium's priority that hold a face of code MEDIUM; 0 where faces differ.
     """
 
     code: int
     around: int | None = None
-    faces: np.ndarray | None = None
     level: int | None = None
     robust: bool = False
     partners: tuple[int, ...] = ()
     coincident: tuple[tuple[int, np.ndarray, np.ndarray, np.ndarray], ...] = ()
-    holders: int = 0
-
-    @cached_property
-    def face_levels(self) -> tuple[int, ...]:
-        """Priorities that decide by themselves at some faces."""
-        codes = _NO_FACES if self.faces is None else _sorted_set(self.faces, LEVELS + HIGHEST_LEVEL + 1)
-        return tuple((codes[codes >= LEVELS] - LEVELS).tolist())
 
 
 class _Surfaces:
@@ -358,46 +336,35 @@ class _Placed(_Surfaces):
 class _Side:
     """What one body of a pair is to the other.
 
-    :param touching: sorted triangles that cross or touch the other's surface.
-    :param inside: the other triangles that lie inside the other body.
+    :param held: it lies wholly inside the other body.
+    :param crosses: its surface crosses or touches the other's, or some of its islands lie inside the other body.
     :param coincident: triangles that share part of a plane with the other's surface; signs: +1 if the normals point the
         same way, else -1; whole: those that lie on it as a whole.
     """
 
-    touching: np.ndarray = field(default_factory=lambda: _NO_FACES)
-    inside: np.ndarray = field(default_factory=lambda: _NO_FACES)
+    held: bool = False
+    crosses: bool = False
     coincident: np.ndarray = field(default_factory=lambda: _NO_FACES)
     signs: np.ndarray = field(default_factory=lambda: _NO_FACES)
     whole: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=bool))
 
-    @property
-    def concerned(self) -> bool:
-        return len(self.touching) > 0 or len(self.inside) > 0
-
 
 @dataclass(eq=False)
 class Memory:
-    """What is known from the last analysis: bodies in the world, pairs of them, and what followed for every body.
+    """What is known from the last analysis: bodies in the world, and pairs of them."""
 
-    :ivar looked_at: pairs whose meshes were compared in the last analysis.
-    """
-
-    looked_at: int = 0
     places: dict[tuple, _Placed] = field(default_factory=dict)
     pairs: dict[tuple, tuple[_Side, _Side]] = field(default_factory=dict)
-    contacts: dict[tuple, Contact] = field(default_factory=dict)
-    levels: dict[tuple, tuple[Contact, Contact]] = field(default_factory=dict)
 
 
 def analyse(bodies: Sequence[Body], memory: Memory | None = None) -> list[Contact]:
-    """Tell what lies around every body's faces.
+    """Tell what lies around every body.
 
     :param memory: what an earlier analysis found; brought up to date.
     """
     memory = Memory() if memory is None else memory
-    memory.looked_at = 0
-    if not all(body.certain and np.isfinite(body.matrix).all() and body.solid.closed for body in bodies):
-        memory.places, memory.pairs, memory.contacts, memory.levels = {}, {}, {}, {}
+    if not all(np.isfinite(body.matrix).all() and body.solid.closed for body in bodies):
+        memory.places, memory.pairs = {}, {}
         return [Contact(PROBE, robust=body.solid.closed and body.solid.overlaps_itself) for body in bodies]
     keys = [(body.solid, np.ascontiguousarray(body.matrix, dtype=np.float64).tobytes()) for body in bodies]
     places = {
@@ -410,28 +377,15 @@ def analyse(bodies: Sequence[Body], memory: Memory | None = None) -> list[Contac
         key = (keys[i], keys[j])
         pairs[key] = memory.pairs.get(key)
     new = [key for key, pair in pairs.items() if pair is None]
-    memory.looked_at = len(new)
     pairs.update(zip(new, _compare([(places[first], places[second]) for first, second in new])))
     sides: list[list[tuple[int, _Side]]] = [[] for _ in bodies]
-    related: list[tuple[int, int]] = []
     for i, j in candidates:
-        of_i, of_j = pairs[keys[i], keys[j]]
-        if of_i.concerned:
-            sides[i].append((j, of_i))
-        if of_j.concerned:
-            sides[j].append((i, of_j))
-        if of_i.concerned or of_j.concerned:
-            related.append((i, j))
+        for one, other, side in zip((i, j), (j, i), pairs[keys[i], keys[j]]):
+            if side.held or side.crosses:
+                sides[one].append((other, side))
     robust = [body.solid.overlaps_itself or places[key].flat for body, key in zip(bodies, keys)]
-    contacts: dict[tuple, Contact] = {}
-    for i, body in enumerate(bodies):
-        key = (keys[i], robust[i], body.priority, body.wants_faces, i) + tuple(
-            (j, bodies[j].priority, bodies[j].medium, id(side)) for j, side in sides[i]
-        )
-        contacts[key] = memory.contacts.get(key) or _contact(i, bodies, places[keys[i]], sides[i], robust[i])
-    memory.places, memory.pairs, memory.contacts = places, pairs, contacts
-    result, memory.levels = _with_levels(bodies, list(contacts.values()), robust, related, memory.levels)
-    return result
+    memory.places, memory.pairs = places, pairs
+    return _with_levels(bodies, [_contact(i, bodies, sides[i], robust[i]) for i in range(len(bodies))])
 
 
 def flat_sides(solid: Solid) -> np.ndarray:
@@ -556,158 +510,48 @@ def _rests(a: _Placed, b: _Placed, low: np.ndarray, high: np.ndarray) -> bool:
 # Bodies
 
 
-def _contact(
-    index: int, bodies: Sequence[Body], place: _Placed, sides: list[tuple[int, _Side]], robust: bool
-) -> Contact:
+def _contact(index: int, bodies: Sequence[Body], sides: list[tuple[int, _Side]], robust: bool) -> Contact:
     """What is known of one body, its level apart, from what it is to its partners."""
     partners = tuple(sorted(j for j, _ in sides))
-    order = place.solid.order
+    order = bodies[index].solid.order
     coincident = tuple((j, order[side.coincident], side.signs, side.whole) for j, side in sides if len(side.coincident))
-    result = Contact(PROBE, robust=robust, partners=partners, coincident=coincident)
-    if robust:
-        return result
-    codes, names, holders, levels = _face_codes(bodies[index].priority, bodies, place, sides)
-    around = None
-    known = codes == MEDIUM
-    count = 0
-    if known.any():
-        chosen = int(holders[0][known][0])
-        if (holders[0][known] != chosen).any():
-            area = np.bincount(holders[0][known], weights=place.areas[known], minlength=len(names))
-            chosen = int(np.argmax(area))
-            codes[known & (holders[0] != chosen)] = PROBE
-        around = names[chosen]
-        counts = holders[1][codes == MEDIUM]
-        count = int(counts[0]) if (counts == counts[0]).all() else 0
-    codes = np.where((codes == PROBE) & (levels >= 0), LEVELS + levels, codes).astype(np.int8)
-    first = int(codes[0])
-    if (codes == first).all():
-        return replace(result, code=first if first < LEVELS else PROBE, around=around, holders=count)
-    if not bodies[index].wants_faces:
-        return result
-    faces = np.empty_like(codes)
-    faces[order] = codes
-    return replace(result, code=FACES, around=around, faces=faces, holders=count)
+    code, around = (PROBE, None) if robust else _outside(index, bodies, sides)
+    return Contact(code, around, robust=robust, partners=partners, coincident=coincident)
 
 
-def _face_codes(
-    own: int, bodies: Sequence[Body], place: _Placed, sides: list[tuple[int, _Side]]
-) -> tuple[np.ndarray, list[int], tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """The codes of a body's faces, or one code for all of them.
-
-    A face that touches a body is unknown only if no stronger one holds it, since that decides.
-
-    :return: codes; one body of every surrounding medium; for each face the place of its medium in that list, and the
-        number of bodies of the medium's priority that hold it; the only priority that touches or holds it, below 0 where
-        there are none, several, or one beyond HIGHEST_LEVEL.
+def _outside(index: int, bodies: Sequence[Body], sides: list[tuple[int, _Side]]) -> tuple[int, int | None]:
+    """The code of a body, and one that is the known surrounding medium: of all that hold it the strongest decides, unless
+    another that might win there crosses the body.
     """
-    all_faces = place.corners.shape[1]
-    uniform = all(len(side.touching) == 0 and len(side.inside) in (0, all_faces) for _, side in sides)
-    count = 1 if uniform else all_faces
-    groups: dict[tuple[int, Hashable], list[tuple[int, _Side]]] = {}
-    for j, side in sides:
-        groups.setdefault((bodies[j].priority, bodies[j].medium), []).append((j, side))
-    codes = np.full(count, AIR, dtype=np.int8)
-    names: list[int] = []
-    medium, holders = np.zeros(count, dtype=_COUNT), np.zeros(count, dtype=_COUNT)
-    decided = np.zeros(count, dtype=bool)
-    doubted = np.zeros(count, dtype=bool)
-    levels, several = np.full(count, -1, dtype=_COUNT), np.zeros(count, dtype=bool)
-    for priority in sorted({priority for priority, _ in groups}):
-        claims = np.zeros(count, dtype=_COUNT)
-        held = np.zeros(count, dtype=bool)
-        number = np.zeros(count, dtype=_COUNT)
-        which = np.zeros(count, dtype=_COUNT)
-        unsure = np.zeros(count, dtype=bool)
-        for members in (members for key, members in groups.items() if key[0] == priority):
-            inside = np.zeros(count, dtype=_COUNT)
-            for _, side in members:
-                several[side.coincident] = True  # of two faces in one place a ray meets either
-                if len(side.inside) == all_faces:
-                    inside += 1
-                else:
-                    inside[side.inside] += 1
-            near = np.zeros(count, dtype=bool)
-            touching = [side.touching for _, side in members if len(side.touching)]
-            if touching:
-                near[np.concatenate(touching)] = True
-            claims += near | (inside > 0)
-            which[inside > 0] = len(names)
-            names.append(members[0][0])
-            held |= inside > 0
-            number += inside
-            unsure |= near
-        concerned = held | unsure
-        several |= concerned & (levels >= 0)
-        levels[concerned] = priority
-        if priority <= own:
-            codes[held] = NEVER
-            decided |= held
-            doubted |= unsure
-            continue
-        codes[~decided & (doubted | unsure | (claims > 1))] = PROBE
-        known = ~decided & ~doubted & held & (claims == 1)
-        codes[known] = MEDIUM
-        medium[known] = which[known]
-        # A body of the same medium that only touches the face may or may not hold it.
-        holders[known] = np.where(unsure[known], 0, number[known])
-        decided |= held
-        doubted |= unsure
-    codes[~decided & doubted] = PROBE
-    levels[several | (levels > HIGHEST_LEVEL)] = -1
-    return codes, names, (medium, holders), levels
+    own = bodies[index].priority
+    doubted = False
+    for priority in sorted({bodies[j].priority for j, _ in sides}):
+        members = [(j, side) for j, side in sides if bodies[j].priority == priority]
+        holders = [j for j, side in members if side.held]
+        if holders and priority <= own:
+            return NEVER, None
+        if holders and not doubted and len({bodies[j].medium for j, _ in members}) == 1:
+            return MEDIUM, holders[0]
+        doubted = True
+    return PROBE if doubted else AIR, None
 
 
-def _with_levels(
-    bodies: Sequence[Body],
-    contacts: list[Contact],
-    robust: list[bool],
-    related: list[tuple[int, int]],
-    known: dict[tuple, tuple[Contact, Contact]],
-) -> tuple[list[Contact], dict[tuple, tuple[Contact, Contact]]]:
-    """The contacts with their levels: of one priority, whose bodies are apart and whole.
-
-    :param known: contacts without and with levels, as returned the last time.
-    """
-    faults: dict[int, int] = {}
-    own_faults = [0] * len(bodies)
-    for i, body in enumerate(bodies):
-        if robust[i]:
-            faults[body.priority] = faults.get(body.priority, 0) + 1
-            own_faults[i] += 1
-    for i, j in related:
-        priority = bodies[i].priority
-        if priority == bodies[j].priority:
-            faults[priority] = faults.get(priority, 0) + 1
-            own_faults[i] += 1
-            own_faults[j] += 1
-
-    def decides(i: int, priority: int) -> bool:
-        return faults.get(priority, 0) == (own_faults[i] if bodies[i].priority == priority else 0)
-
-    result, kept = [], {}
+def _with_levels(bodies: Sequence[Body], contacts: list[Contact]) -> list[Contact]:
+    """The contacts with their levels: of one priority, whose bodies are apart and whole."""
+    faults: dict[int, list[tuple[int, ...]]] = {body.priority: [] for body in bodies}
     for i, contact in enumerate(contacts):
-        undecided = tuple(LEVELS + level for level in contact.face_levels if not decides(i, level))
-        level = None
-        if contact.code in (PROBE, FACES):
-            priorities = {bodies[j].priority for j in contact.partners}
-            level = min(priorities) if len(priorities) == 1 and decides(i, min(priorities)) else None
-        key = (id(contact), undecided, level)
-        if key not in known:
-            kept[key] = contact, _with_level(contact, undecided, level)
-        else:
-            kept[key] = known[key]
-        result.append(kept[key][1])
-    return result, kept
-
-
-def _with_level(contact: Contact, undecided: tuple[int, ...], level: int | None) -> Contact:
-    """The contact with a level, and without those codes of faces that are undecided."""
-    if undecided:
-        codes = np.arange(LEVELS + HIGHEST_LEVEL + 1, dtype=np.int8)
-        codes[list(undecided)] = PROBE
-        contact = replace(contact, faces=codes.take(contact.faces))
-    return contact if level is None else replace(contact, level=level)
+        own = bodies[i].priority
+        faults[own] += [(i,)] * contact.robust + [(i, j) for j in contact.partners if bodies[j].priority == own]
+    result = []
+    for i, contact in enumerate(contacts):
+        priorities = {bodies[j].priority for j in contact.partners}
+        if contact.code == PROBE and not contact.robust and len(priorities) == 1:
+            (level,) = priorities
+            # The body's own surface is left out.
+            if all(i in fault for fault in faults[level]):
+                contact = replace(contact, level=level)
+        result.append(contact)
+    return result
 
 
 # Pairs
@@ -800,13 +644,15 @@ def _sides(
     """
     i, j = _meeting(a.hierarchy, b.hierarchy, float(tolerance.max()), first, second)
     pair = _pairs_of(a, i, first, b, j, second)
+    touch, coincident = _touching(a, i, b, j, pair, tolerance)
     sides = []
     for surfaces, bodies, others, partners, found in zip(
-        (a, b), (first, second), (b, a), (second, first), _touching(a, i, b, j, pair, tolerance)
+        (a, b), (first, second), (b, a), (second, first), coincident
     ):
-        touching, coincident, signs, whole = found
-        inside = _faces_inside(surfaces, bodies, touching, others, partners, tolerance)
-        sides.append(_split(len(first), surfaces, bodies, touching, inside, coincident, signs, whole))
+        inside = np.zeros(len(first), dtype=np.intp)
+        inside[~touch] = _islands_inside(surfaces, bodies[~touch], others, partners[~touch], tolerance[~touch])
+        held = inside == np.diff(surfaces.island_starts)[bodies]
+        sides.append(_split(surfaces, bodies, held, touch | (~held & (inside > 0)), *found))
     return list(zip(*sides))
 
 
@@ -827,26 +673,26 @@ _NOTHING = _Side()
 
 
 def _split(
-    count: int,
     surfaces: _Surfaces,
     bodies: np.ndarray,
-    touching: np.ndarray,
-    inside: np.ndarray,
+    held: np.ndarray,
+    crosses: np.ndarray,
     coincident: np.ndarray,
     signs: np.ndarray,
     whole: np.ndarray,
 ) -> list[_Side]:
-    """The sides of some pairs from sorted triangles, each by its place in a table with a row for every pair."""
+    """The sides of some pairs; coincident: sorted triangles, each by its place in a table with a row for every pair."""
     width = surfaces.corners.shape[1]
-    ends = [np.searchsorted(keys, width * np.arange(count + 1)).tolist() for keys in (touching, inside, coincident)]
+    ends = np.searchsorted(coincident, width * np.arange(len(bodies) + 1)).tolist()
     result = []
-    for number, first in enumerate((width * np.arange(count) + surfaces.starts[bodies]).tolist()):
-        (t, t_end), (f, f_end), (c, c_end) = (end[number : number + 2] for end in ends)
-        if t == t_end and f == f_end:
-            result.append(_NOTHING)
+    for number, first in enumerate((width * np.arange(len(bodies)) + surfaces.starts[bodies]).tolist()):
+        if held[number] or crosses[number]:
+            some = slice(*ends[number : number + 2])
+            result.append(
+                _Side(bool(held[number]), bool(crosses[number]), coincident[some] - first, signs[some], whole[some])
+            )
         else:
-            parts = touching[t:t_end] - first, inside[f:f_end] - first, coincident[c:c_end] - first
-            result.append(_Side(*parts, signs[c:c_end], whole[c:c_end]))
+            result.append(_NOTHING)
     return result
 
 
@@ -872,27 +718,12 @@ def _same_faces(a: _Placed, b: _Placed, tolerance: float) -> _Side | None:
         return None
     faces = np.arange(a.corners.shape[1])
     every = np.ones(len(faces), dtype=np.int8)
-    return _Side(touching=faces, coincident=faces, signs=every, whole=every.astype(bool))
+    return _Side(crosses=True, coincident=faces, signs=every, whole=every.astype(bool))
 
 
 def _faces_in_box(place: _Placed, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Triangles whose boxes meet a box."""
-    tree, count = place.hierarchy, place.corners.shape[1]
-    box = np.concatenate([-high, low])
-    nodes = tree.tops
-    for level in reversed(tree.levels):
-        if level is not tree.levels[-1]:
-            nodes = (nodes[:, None] * CHILDREN + np.arange(CHILDREN)).ravel()
-        for side in range(6):
-            nodes = nodes[level[side].take(nodes) + box[side] <= 0.0]
-        if len(nodes) * MANY > level.shape[1]:
-            break
-    else:
-        return nodes
-    meet = np.ones(count, dtype=bool)
-    for side in range(6):
-        meet &= place.bounds[side] <= -box[side]
-    return np.flatnonzero(meet)
+    return _in_boxes(place.hierarchy, _ONE, low[:, None], high[:, None])[1]
 
 
 def _in_boxes(
@@ -1069,16 +900,17 @@ def _children_meet(
 
 def _touching(
     a: _Surfaces, i: np.ndarray, b: _Surfaces, j: np.ndarray, pair: np.ndarray, tolerance: np.ndarray
-) -> list[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
-    """The faces of bodies that cross, touch or coincide in pairs.
+) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray, np.ndarray]]]:
+    """Which bodies cross, touch or coincide in pairs, and with which faces they coincide.
 
     :param i: (n,) triangles of a; j: those of b which may; pair: the pair of bodies to which both belong.
     :param tolerance: of every pair of bodies.
-    :return: for a and b: those that touch, those that coincide, the latter's signs, and whether they do as a whole.
+    :return: whether each pair touches; for a and b: triangles that coincide, their signs, and whether they do as a whole.
         Triangles are sorted, each by its place in a table with a row for every pair.
     """
+    touch = np.zeros(len(tolerance), dtype=bool)
     if len(i) == 0:
-        return 2 * [(_NO_FACES, _NO_FACES, _NOTHING.signs, _NOTHING.whole)]
+        return touch, 2 * [(_NO_FACES, _NOTHING.signs, _NOTHING.whole)]
     (keys_a, i), (keys_b, j) = (
         _numbered(pair * width + faces, len(tolerance) * width)
         for faces, width in ((i, a.corners.shape[1]), (j, b.corners.shape[1]))
@@ -1087,14 +919,14 @@ def _touching(
     chunks = [slice(start, start + CHUNK) for start in range(0, len(i), CHUNK)]
     pairs = [_not_apart(of_a, i[chunk], of_b, j[chunk], tolerance[pair[chunk]]) for chunk in chunks]
     i, j, tolerance = (np.concatenate(parts) for parts in zip(*pairs))
-    touching = [keys[_sorted_set(index, len(keys))] for keys, index in ((keys_a, i), (keys_b, j))]
+    touch[keys_a[i] // a.corners.shape[1]] = True
     i, j, cosine, tolerance = _parallel(of_a, i, of_b, j, tolerance)
     shared = _share_a_plane(of_a, i, of_b, j, tolerance)
     result = []
-    for keys, found, *other in ((keys_a, touching[0], of_a, i, of_b, j), (keys_b, touching[1], of_b, j, of_a, i)):
+    for keys, *other in ((keys_a, of_a, i, of_b, j), (keys_b, of_b, j, of_a, i)):
         faces, signs, whole = _coincident(*other, cosine, shared, tolerance)
-        result.append((found, keys[faces], signs, whole))
-    return result
+        result.append((keys[faces], signs, whole))
+    return touch, result
 
 
 def _triangles(place: _Placed, faces: np.ndarray) -> np.ndarray:
@@ -1120,16 +952,6 @@ def _sorted_set(values: np.ndarray, count: int) -> np.ndarray:
     used = np.zeros(count, dtype=bool)
     used[values] = True
     return np.flatnonzero(used)
-
-
-def _among(values: np.ndarray, some: np.ndarray, count: int) -> np.ndarray:
-    """Whether each of some numbers below a count is among others, which are sorted."""
-    if count > TABLE + 8 * values.size:
-        place = np.minimum(np.searchsorted(some, values), len(some) - 1)
-        return some[place] == values
-    used = np.zeros(count, dtype=bool)
-    used[some] = True
-    return used[values]
 
 
 def _by_number(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -1300,70 +1122,21 @@ def _clipped(polygons: np.ndarray, heights: np.ndarray) -> np.ndarray:
 # What holds what
 
 
-def _faces_inside(
-    a: _Surfaces,
-    first: np.ndarray,
-    touching: np.ndarray,
-    b: _Surfaces,
-    second: np.ndarray,
-    tolerance: np.ndarray,
+def _islands_inside(
+    a: _Surfaces, first: np.ndarray, b: _Surfaces, second: np.ndarray, tolerance: np.ndarray
 ) -> np.ndarray:
-    """The triangles of bodies in pairs, those that touch the other's surface left out, that lie inside the other.
-
-    Pieces of a surface between crossings lie wholly inside or outside, and what reaches out of b's box is outside.
+    """How many islands of bodies lie inside the other body of a pair, whose surfaces are apart; (n,).
 
     :param first: (n,) which body of a each pair has; second: which of b; tolerance: of the pair.
-    :param touching: sorted triangles, each by its place in a table with a row for every pair; the result likewise.
     """
-    count, width = len(first), a.corners.shape[1]
     low, high = (side[:, second] + margin for side, margin in zip(b.boxes, (-tolerance, tolerance)))
     pair, island = _ranges(a.island_starts[first], a.island_starts[first + 1])
-    place_of = np.searchsorted(pair, np.arange(count)) - a.island_starts[first]
-    crossed = np.zeros(len(pair), dtype=bool)
-    pairs_crossed, face = np.divmod(touching, width) if count > 1 else (0 * touching, touching)
-    crossed[place_of[pairs_crossed] + a.islands[face]] = True
     lowest, highest = a.island_boxes
     within = (lowest[:, island] >= low[:, pair]) & (highest[:, island] <= high[:, pair])
-    whole = np.flatnonzero(~crossed & within.all(axis=0))
+    pair, island = (each[within.all(axis=0)] for each in (pair, island))
     faces, starts = a.by_island
-    if len(whole):
-        samples = a.centroids(faces[starts[island[whole]]])
-        whole = whole[_windings(samples, b, second[pair[whole]]) >= 1]
-    owner, place = _ranges(starts[island[whole]], starts[island[whole] + 1])
-    found = np.sort(pair[whole][owner] * width + faces[place])
-    if len(touching) == 0:
-        return found
-    those = _sorted_set(pairs_crossed, count)
-    if isinstance(a, _Placed):
-        part = _faces_in_box(a, low[:, those[0]], high[:, those[0]])
-        pair = np.zeros(len(part), dtype=np.intp)
-    else:
-        box, part = _in_boxes(a.hierarchy, first[those], low[:, those], high[:, those])
-        pair = those[box]
-    free = ~_among(pair * width + part, touching, count * width) & crossed[place_of[pair] + a.islands[part]]
-    pair, part = pair[free], part[free]
-    if len(part) == 0:
-        return found
-    points = a.vertices.shape[1]
-    used, corners = _numbered(pair * points + a.corners[:, part], count * points)
-    root = meshes.connected(
-        len(used), np.concatenate([corners[0], corners[1]]), np.concatenate([corners[1], corners[2]])
-    )
-    reaches_out = np.zeros(len(used), dtype=bool)
-    pair_used, used = np.divmod(used, points) if count > 1 else (np.zeros(1, dtype=np.intp), used)
-    for axis in range(3):
-        position = a.vertices[axis][used]
-        reaches_out[root[(position < low[axis, pair_used]) | (position > high[axis, pair_used])]] = True
-    piece = root[corners[0]]
-    chosen = np.flatnonzero(~reaches_out[piece])
-    if len(chosen) == 0:
-        return found
-    pieces, index = _numbered(piece[chosen], len(used))
-    samples = np.empty(len(pieces), dtype=np.intp)
-    samples[index] = chosen
-    holds = _windings(a.centroids(part[samples]), b, second[pair[samples]]) >= 1
-    chosen = chosen[holds[index]]
-    return np.sort(np.concatenate([found, pair[chosen] * width + part[chosen]]))
+    inside = _windings(a.centroids(faces[starts[island]]), b, second[pair]) >= 1  # one triangle speaks for all
+    return np.bincount(pair[inside], minlength=len(first))
 
 
 def _windings(

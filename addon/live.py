@@ -166,7 +166,7 @@ def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph)
     mend_nodes_of({update.id.original for update in depsgraph.updates})
     if not has_window():
         analysis.follow(scene, depsgraph)
-    elif analysis.hold(scene, depsgraph):
+    elif analysis.follow_or_distrust(scene, depsgraph):
         _wait_for_rest()
     _trust(scene)
 
@@ -189,9 +189,8 @@ def analyse_at_rest() -> float | None:
     """Analyse what has changed in windows, or return the seconds to wait before another call."""
     if is_at_work():
         return REST
-    for scene in _analysed_scenes():
-        analysis.settle(scene)
-        _trust(scene)
+    for scene in filter(analysis.is_distrusted, _analysed_scenes()):
+        _analyse(scene)
     for scene in _cut_scenes():
         update_cut(scene)
     return None
@@ -239,7 +238,8 @@ def narrow_before_save(*_: object) -> None:
     for scene in _analysed_scenes():
         if any(frame_scripts()):
             analysis.distrust(scene)
-        analysis.settle(scene)
+        if analysis.is_distrusted(scene):
+            analysis.analyse(scene)
         analysis.trust(scene, every_frame=False)
     for scene in _cut_scenes():
         update_cut(scene)

@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
-from .contacts import FACES, PROBE
+from .contacts import PROBE
 from .dispersion import mean_cauchy_distances
 from .identity import NO_SCENE, SCENE_PROPERTY
 from .parameters import (
@@ -114,7 +114,6 @@ CLEAR = (1.0, 1.0, 1.0, 1.0)
 BY_OBJECT = 5
 """As in osl/outside.h, beside the codes of :mod:`contacts`: each object has its own."""
 
-FACE_ATTRIBUTE = "nd_outside"
 OFFSET_GROUP = "Nested Dielectric Offset"
 OFFSET_ATTRIBUTE = "nd_offset"
 """Of a mesh's points: by how much the modifier with that group moves them, in the object's own space. Objects that share the
@@ -126,7 +125,7 @@ ATTRIBUTE_SOCKET = "Attribute"
 
 NEIGHBOUR_VALUES = ("IOR", "Transmittance", "Transmittance Depth")
 OBJECT_PROPERTIES = ("nd_outside", "nd_outside_transmittance")
-"""Where faces and objects keep what a scene's analysis tells of them, four floats to an object's property."""
+"""Where objects keep what a scene's analysis tells of them, four floats to a property."""
 
 TABLE_SOCKET = "Spectral Table"
 MEANS_SOCKET = "Spectral Table Means"
@@ -162,8 +161,7 @@ _ANALYSIS_SOCKETS = {
         "Around",
         "INT",
         PROBE,
-        "What lies outside: 0 the scene is asked, 1 air, 2 the surroundings below, 3 a winner, "
-        "4 each face tells, 5 each object tells",
+        "What lies outside: 0 the scene is asked, 1 air, 2 the surroundings below, 3 a winner, 5 each object tells",
     ),
     LEVEL_SOCKET: (
         "AroundLevel",
@@ -895,8 +893,7 @@ def _requests(
     # JF's also moves the index of white light.
     curve["Dispersion"] = math("COMPARE", model, 2.0, 0.5)
     curve["Sellmeier C"] = curve["Sellmeier B"]
-    outside = inputs.outputs[OUTSIDE_SOCKET]
-    by_object = math("COMPARE", outside, float(BY_OBJECT), 0.5)
+    by_object = math("COMPARE", inputs.outputs[OUTSIDE_SOCKET], float(BY_OBJECT), 0.5)
     conditions = curve | {
         "Transmittance": absorbs,
         "Transmittance Depth": absorbs,
@@ -906,7 +903,6 @@ def _requests(
     names = [
         *((name, "GEOMETRY", cut) for name in CUT_ATTRIBUTES),
         *((name, "OBJECT", by_object) for name in OBJECT_PROPERTIES),
-        (FACE_ATTRIBUTE, "GEOMETRY", math("GREATER_THAN", outside, FACES - 0.5)),
         (PRIORITY_PROPERTY, "OBJECT", None),
         ("material_slots[1].material.pass_index", "OBJECT", None),
     ]

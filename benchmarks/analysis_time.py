@@ -1,8 +1,8 @@
 """Time on the wall of looking at a scene, and of what Blender waits for while one of its objects is moved.
 
 Run as ``.venv/bin/python benchmarks/analysis_time.py [ROUNDS]``. Printed for each scene: the first look at all of it, what a
-window waits for with every step of the mouse (the first step tells media to ask), and the look once the mouse rests; medians
-over the rounds, in milliseconds.
+window waits for with every step of the mouse (the first lets media ask), and the look once the mouse rests; medians over the
+rounds, in milliseconds.
 """
 
 import json
@@ -21,7 +21,7 @@ import nested_dielectric as nd  # noqa: E402
 from bench_report import markdown  # noqa: E402
 from bench_scenes import Body, ball, droplets, iced_water_scene  # noqa: E402
 from bench_worker import add_bodies, nested  # noqa: E402
-from nested_dielectric import analysis  # noqa: E402
+from nested_dielectric import analysis, live  # noqa: E402
 from scenes import new_scene  # noqa: E402
 
 STEPS = 5
@@ -68,21 +68,22 @@ def measured(title: str) -> list[float]:
     add_bodies(bodies, nested)
     scene.view_layers[0].update()
     first = milliseconds(lambda: nd.analyse(scene))
+    live.remove()
     scene.view_layers[0].update()
     obj = bpy.data.objects[name]
     steps: list[float] = []
 
-    def hold(_, depsgraph) -> None:
-        steps.append(milliseconds(lambda: analysis.hold(scene, depsgraph)))
+    def follow(_, depsgraph) -> None:
+        steps.append(milliseconds(lambda: analysis.follow_or_distrust(scene, depsgraph)))
 
-    bpy.app.handlers.depsgraph_update_post.append(hold)
+    bpy.app.handlers.depsgraph_update_post.append(follow)
     try:
         for _ in range(1 + STEPS):
             obj.location.x += 0.001
             scene.view_layers[0].update()
     finally:
-        bpy.app.handlers.depsgraph_update_post.remove(hold)
-    rest = milliseconds(lambda: analysis.settle(scene))
+        bpy.app.handlers.depsgraph_update_post.remove(follow)
+    rest = milliseconds(lambda: nd.analyse(scene))
     triangles = sum(len(body.triangles) for body in bodies)
     return [triangles, first, steps[0], statistics.median(steps[1:]), rest]
 

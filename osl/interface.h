@@ -22,7 +22,7 @@ struct Interface {
  * `always_air`: the analysis tells so of all objects of the material, which leaves out most of this; looks_ahead: the
  * extent of the media matters; `cut`: surfaces of the scene are cut where media cross; `wants_priority`:
  * that of the medium outside matters; `curves`: see CURVES_NONE. */
-Interface resolve_interface(Medium own, Outside told_of_all, int cut, int wants_priority, int always_air, int looks_ahead,
+Interface resolve_interface(Medium own, Outside told, int cut, int wants_priority, int always_air, int looks_ahead,
                             int curves, float wavelength)
 {
   vector away = backfacing() ? -Ng : Ng;
@@ -34,11 +34,11 @@ Interface resolve_interface(Medium own, Outside told_of_all, int cut, int wants_
   s.traced = 1;
   s.mistold = 0;
   /* The way through a medium that is charged ends where another wins, so its priority counts even alone. */
-  int known = told_of_all.gives_back || (own.absorbs && looks_ahead); /* what may be constant stands first, or nothing folds away */
+  int known = told.gives_back || (own.absorbs && looks_ahead); /* what may be constant stands first, or nothing folds away */
   if (known)
     inner.priority = shaded_priority(own.priority);
   int exists = 1;
-  if (cut && cut_outside(known || wants_priority, curves, wavelength, told_of_all.scene, outer, exists)) {
+  if (cut && cut_outside(known || wants_priority, curves, wavelength, told.scene, outer, exists)) {
     s.valid = exists;
     outer_holders = 1;
   }
@@ -48,8 +48,7 @@ Interface resolve_interface(Medium own, Outside told_of_all, int cut, int wants_
       s.mistold = (lies_in_a_medium(P, away, cut, traced) && lies_in_a_medium(P, askew(away), cut, traced)) || !traced;
   }
   else {
-    Outside told = told_of_all;
-    int outside = told_outside(told);
+    int outside = told.outside;
     /* Split light needs the medium's whole curve, and a look ahead all that holds the point. */
     if (outside == OUTSIDE_MEDIUM && (curves == CURVES_ALL || (looks_ahead && told.medium.absorbs) ||
                                       (told.gives_back && raytype("shadow"))))
@@ -59,7 +58,7 @@ Interface resolve_interface(Medium own, Outside told_of_all, int cut, int wants_
     if (outside == OUTSIDE_WINNER)
       s.valid = 0;
     /* What a single priority decides is checked, too. */
-    int unknown = outside == OUTSIDE_UNKNOWN;
+    int unknown = outside < OUTSIDE_AIR || outside > OUTSIDE_WINNER;
     int checks = ((!unknown || told.level >= 0.0) && spot_check()) ? 2 : 0;
     for (int i = unknown ? 0 : 1; i <= checks; i++) {
       Surroundings found = probe_surroundings(P, (i < 2) ? away : askew(away), inner.priority, known, i ? -1.0 : told.level,

@@ -7,9 +7,7 @@
 #define OUTSIDE_AIR 1
 #define OUTSIDE_MEDIUM 2    /* the one medium that the analysis names */
 #define OUTSIDE_WINNER 3    /* a medium that wins over the surface's own */
-#define OUTSIDE_BY_FACE 4   /* an attribute of each face tells */
 #define OUTSIDE_BY_OBJECT 5 /* the object's own properties tell */
-#define OUTSIDE_LEVELS 8    /* of a face, and more: unknown, and what is left is its level */
 
 /* One in so many surfaces that the analysis tells of is asked all the same. Where the scene answers otherwise the surface
  * is so many times as bright as a white one, or few samples would hide it. */
@@ -56,18 +54,6 @@ Outside told_by_object(int gives_back, int scene)
   told.level = (facts >> 6) - 1;
   told.medium = plain_medium(object[1], object[2], color(left[0], left[1], left[2]), object[3]);
   return told;
-}
-
-int told_outside(output Outside told)
-{
-  if (told.outside != OUTSIDE_BY_FACE)
-    return told.outside;
-  float face = OUTSIDE_UNKNOWN;
-  getattribute("nd_outside", face);
-  if (face < OUTSIDE_LEVELS)
-    return (face <= OUTSIDE_WINNER) ? (int)face : OUTSIDE_UNKNOWN;
-  told.level = face - OUTSIDE_LEVELS;
-  return OUTSIDE_UNKNOWN;
 }
 
 /* True for one point in SPOT_CHECKS of every face. */

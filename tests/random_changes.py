@@ -495,7 +495,7 @@ def compare(samples: int) -> tuple[float, int]:
     live.remove()
     difference = float(np.sqrt(((render(samples) - known) ** 2).mean()))
     nd.analyse(scene_now())
-    return difference, len(found.known) + len(found.partly)
+    return difference, len(found.known)
 
 
 def make_changes(seed: int, count: int, every: int, look: Callable[[str, float, int], None]) -> list[str]:

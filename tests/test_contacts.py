@@ -6,7 +6,7 @@ import pytest
 from mathutils import Matrix
 
 from nested_dielectric import contacts, meshes
-from nested_dielectric.contacts import AIR, FACES, LEVELS, MEDIUM, NEVER, PROBE, Body, Memory, Solid, analyse
+from nested_dielectric.contacts import AIR, MEDIUM, NEVER, PROBE, Body, Memory, Solid, analyse
 
 pytestmark = pytest.mark.quick
 
@@ -127,25 +127,18 @@ def brute_force(bodies: list[Body], index: int) -> tuple[np.ndarray, np.ndarray]
     return codes.reshape(count, -1), medium.reshape(count, -1)
 
 
-def codes_of(contact, body: Body) -> np.ndarray:
-    """Codes of the faces, those that know a level as unknown."""
-    said = contact.faces if contact.code == FACES else np.full(len(body.solid.triangles), contact.code)
-    return np.where(said < LEVELS, said, PROBE)
-
-
 def assert_true(bodies: list[Body], found: list) -> None:
-    """What is said of any face is what brute force finds on all of it."""
+    """What is said of a body is what brute force finds on all of it."""
     for index, (body, contact) in enumerate(zip(bodies, found)):
         codes, media = brute_force(bodies, index)
-        said = codes_of(contact, body)
-        known = said != PROBE
-        assert (codes[known] == said[known, None]).all()
+        if contact.code != PROBE:
+            assert (codes == contact.code).all()
         if contact.around is not None:
-            assert (media[said == MEDIUM] == bodies[contact.around].medium).all()
-        for level in set() if contact.faces is None else set(contact.faces[contact.faces >= LEVELS].tolist()):
-            points = just_outside(body)[contact.faces == level].reshape(-1, 3)
+            assert (media == bodies[contact.around].medium).all()
+        if contact.level is not None:
+            points = just_outside(body).reshape(-1, 3)
             for j, other in enumerate(bodies):
-                if j != index and other.priority != level - LEVELS:
+                if j != index and other.priority != contact.level:
                     assert (winding(points, placed(other)) == 0).all()
 
 
@@ -168,7 +161,6 @@ def test_nested_spheres_know_the_medium_around_them():
     assert [c.code for c in found] == [AIR, MEDIUM, MEDIUM, MEDIUM]
     assert [c.around for c in found] == [None, 3, 1, 0]
     assert found[2].partners == (0, 1, 3)
-    assert [c.holders for c in found] == [0, 1, 1, 1]
 
 
 def test_a_sphere_inside_a_stronger_or_equal_one_never_exists():
@@ -200,20 +192,12 @@ def test_codes_of_random_crossing_bodies_are_those_of_brute_force(seed):
     assert_true(bodies, found)
 
 
-def test_only_faces_near_the_crossing_are_left_to_rays():
-    sphere = icosphere(4)
-    bodies = [Body(sphere, at(), 1, 1), Body(sphere, at(1.0, 0.1, 0.2), 2, 2)]
+def test_bodies_that_cross_are_left_to_rays():
+    sphere = icosphere(3)
+    bodies = [Body(sphere, at(), 1, 1), Body(sphere, at(1.0, 0.1, 0.2), 2, 2), Body(sphere, at(9.0), 3, 3)]
     found = analyse(bodies)
-    assert [c.code for c in found] == [FACES, FACES]
-    assert [sorted(set(c.faces.tolist())) for c in found] == [[AIR, MEDIUM, LEVELS + 2], [AIR, NEVER, LEVELS + 1]]
-    assert all(np.count_nonzero(c.faces >= LEVELS) < 0.1 * len(sphere.triangles) for c in found)
-
-
-def test_a_body_that_takes_no_faces_is_left_to_rays_where_they_differ():
-    sphere = icosphere()
-    found = analyse([Body(sphere, at(), 1, 1, wants_faces=False), Body(sphere, at(1.0), 2, 2)])
-    assert (found[0].code, found[0].faces) == (PROBE, None)
-    assert found[1].code == FACES
+    assert [c.code for c in found] == [PROBE, PROBE, AIR]
+    assert [c.partners for c in found] == [(1,), (0,), ()]
 
 
 @pytest.mark.parametrize("cells", [1, 5])
@@ -229,7 +213,7 @@ def test_a_box_standing_on_a_bigger_one_coincides_with_it(cells, turn):
     assert other == 0
     assert sorted(faces) == sorted(bottom)
     assert (signs == -1).all() and whole.all()
-    assert (codes_of(found[1], bodies[1])[faces] == PROBE).all()
+    assert [c.code for c in found] == [PROBE, PROBE]
     assert_true(bodies, found)
 
 
@@ -246,7 +230,7 @@ def test_identical_spheres_coincide_everywhere():
             assert (signs == 1).all() and whole.all()
 
 
-def test_surfaces_that_share_a_part_of_a_side_are_left_to_rays_there():
+def test_surfaces_that_share_a_part_of_a_side_are_left_to_rays():
     bodies = [
         Body(grid_box((0, 0, 0), (1, 1, 1), 3), at(), 1, 1),
         Body(grid_box((0, 0.2, 0.3), (2, 0.9, 0.8), 3), at(), 2, 2),
@@ -257,7 +241,7 @@ def test_surfaces_that_share_a_part_of_a_side_are_left_to_rays_there():
     assert_true(bodies, found)
 
 
-@pytest.mark.parametrize("broken", ["open", "inverted", "uncertain", "not a number"])
+@pytest.mark.parametrize("broken", ["open", "inverted", "not a number"])
 def test_one_body_in_doubt_leaves_all_to_rays(broken):
     sphere = icosphere()
     odd = sphere
@@ -267,8 +251,8 @@ def test_one_body_in_doubt_leaves_all_to_rays(broken):
         odd = inverted(sphere)
     if broken == "not a number":
         odd = Solid(np.where(np.arange(len(sphere.vertices))[:, None] == 3, np.nan, sphere.vertices), sphere.triangles)
-    bodies = [Body(sphere, at(), 1, 1), Body(odd, at(9.0), 2, 2, certain=broken != "uncertain")]
-    assert odd.closed == (broken == "uncertain")
+    bodies = [Body(sphere, at(), 1, 1), Body(odd, at(9.0), 2, 2)]
+    assert not odd.closed
     assert [(c.code, c.level, c.partners) for c in analyse(bodies)] == [(PROBE, None, ())] * 2
 
 
@@ -276,7 +260,7 @@ def test_bodies_of_equal_priority_fuse():
     sphere = icosphere(2)
     bodies = [Body(sphere, at(), 2, 0), Body(sphere, at(1.1), 2, 0)]
     found = analyse(bodies)
-    assert all(set(c.faces.tolist()) == {AIR, NEVER, LEVELS + 2} for c in found)
+    assert [(c.code, c.level) for c in found] == [(PROBE, 2)] * 2
     assert_true(bodies, found)
 
 
@@ -287,20 +271,15 @@ def test_equally_strong_surroundings_of_different_media_are_left_to_rays():
     assert analyse([*around, inner])[2].code == PROBE
     same = [Body(sphere, at(0.1 * i, scale=3.0), 5, "a") for i in range(2)]
     contact = analyse([*same, inner])[2]
-    assert (contact.code, contact.holders) == (MEDIUM, 2)
-    assert contact.around in (0, 1)
+    assert contact.code == MEDIUM and contact.around in (0, 1)
 
 
-def test_of_two_surroundings_that_with_the_larger_area_is_known():
-    droplets = joined(icosphere(1, 0.2), icosphere(2, 0.4, (3.0, 0, 0)))
-    bodies = [
-        Body(icosphere(), at(), 2, "small"),
-        Body(icosphere(), at(3.0), 3, "large"),
-        Body(droplets, at(), 1, "droplets"),
-    ]
-    contact = analyse(bodies)[2]
-    assert (contact.code, contact.around) == (FACES, 1)
-    assert contact.faces.tolist() == [LEVELS + 2] * 80 + [MEDIUM] * 320
+def test_a_surrounding_medium_may_cross_the_body_elsewhere():
+    """With another body of the same medium; one of another medium, or that wins over it, is asked for."""
+    sphere = icosphere()
+    inner, around = Body(sphere, at(), 1, "c"), Body(sphere, at(scale=3.0), 5, "a")
+    for priority, medium, code in ((5, "a", MEDIUM), (5, "b", PROBE), (4, "a", PROBE), (0, "a", PROBE), (6, "b", MEDIUM)):
+        assert analyse([around, Body(sphere, at(1.0), priority, medium), inner])[2].code == code
 
 
 def test_a_stronger_holder_decides_where_weaker_surfaces_cross():
@@ -309,14 +288,15 @@ def test_a_stronger_holder_decides_where_weaker_surfaces_cross():
     assert [c.code for c in analyse(bodies)] == [AIR, NEVER, NEVER]
 
 
-def test_islands_of_a_mesh_lie_in_different_media():
+def test_a_mesh_whose_islands_lie_in_different_media_is_left_to_rays():
     droplets = joined(*(icosphere(1, 0.3, (x, 0, 0)) for x in range(5)))
     bodies = [Body(droplets, at(), 2, 2), Body(icosphere(2), at(2.0, scale=0.6), 1, 1)]
     assert not droplets.overlaps_itself
     found = analyse(bodies)
-    assert found[0].code == FACES
-    assert found[0].faces.reshape(5, -1)[:, 0].tolist() == [AIR, AIR, NEVER, AIR, AIR]
+    assert (found[0].code, found[1].code) == (PROBE, AIR)
     assert_true(bodies, found)
+    bodies[1] = Body(icosphere(2), at(2.0, scale=4.0), 1, 1)
+    assert analyse(bodies)[0].code == NEVER
 
 
 def test_a_cavity_is_outside_of_its_body():
@@ -326,8 +306,7 @@ def test_a_cavity_is_outside_of_its_body():
     assert [c.code for c in analyse(bodies)] == [AIR, AIR]
     filled = [Body(hollow, at(), 1, 1), Body(icosphere(), at(scale=0.8), 2, 2)]
     found = analyse(filled)
-    assert set(found[0].faces.tolist()) == {AIR, MEDIUM}
-    assert found[1].code == NEVER
+    assert (found[0].code, found[0].level, found[1].code) == (PROBE, 2, NEVER)
     assert_true(filled, found)
 
 
@@ -377,13 +356,6 @@ def test_a_body_scaled_to_nothing_concerns_nobody():
     assert found[1].code == AIR
 
 
-def levels(contact) -> set[int]:
-    """What the faces that ask know of the only priority around."""
-    return {
-        code - LEVELS if code >= LEVELS else -1 for code in contact.faces.tolist() if code not in (AIR, MEDIUM, NEVER)
-    }
-
-
 def test_one_priority_decides_only_if_its_bodies_are_apart():
     sphere = icosphere()
     cube, one, two = (
@@ -391,24 +363,17 @@ def test_one_priority_decides_only_if_its_bodies_are_apart():
         Body(sphere, at(1.2, scale=0.5), 1, 1),
         Body(sphere, at(-1.2, scale=0.5), 1, 1),
     )
-    assert [levels(c) for c in analyse([cube, one, two])] == [{1}, {2}, {2}]
-    blind = Body(sphere, at(), 2, 2, wants_faces=False)
-    assert analyse([blind, one, two])[0].level == 1
+    assert [c.level for c in analyse([cube, one, two])] == [1, 2, 2]
     touching = Body(sphere, at(1.8, scale=0.5), 1, 1)
-    assert levels(analyse([cube, one, two, touching])[0]) == {-1}
-    assert analyse([blind, one, two, touching])[0].level is None
+    assert analyse([cube, one, two, touching])[0].level is None
     apart = [Body(sphere, at(9.0 + x), 1, 1) for x in (0.0, 0.5)]
-    assert levels(analyse([cube, one, two, *apart])[0]) == {-1}
-    assert levels(analyse([cube, one, two, *apart])[1]) == {2}
+    assert [c.level for c in analyse([cube, one, two, *apart])[:2]] == [None, 2]
     other = Body(sphere, at(0, 1.2, scale=0.5), 3, 3)
-    assert levels(analyse([cube, one, other])[0]) == {1, 3}
-    assert analyse([blind, one, other])[0].level is None
-    assert levels(analyse([cube, Body(sphere, at(1.2), 2, 2)])[0]) == {2}
+    assert analyse([cube, one, other])[0].level is None
+    assert analyse([cube, Body(sphere, at(1.2), 2, 2)])[0].level == 2
     double = Body(joined(icosphere(1), icosphere(1, 1.0, (0.5, 0, 0))), at(9.0), 1, 1)
-    assert levels(analyse([cube, one, double])[0]) == {-1}
-    highest = Body(sphere, at(1.2, scale=0.5), 119, 1)
-    assert levels(analyse([cube, highest])[0]) == {119}
-    assert levels(analyse([cube, Body(sphere, at(1.2, scale=0.5), 120, 1)])[0]) == {-1}
+    assert analyse([cube, one, double])[0].level is None
+    assert analyse([double, Body(sphere, at(9.0, 1.0), 2, 2)])[0].level is None
 
 
 def random_scene(rng: np.random.Generator) -> list[Body]:
@@ -418,16 +383,8 @@ def random_scene(rng: np.random.Generator) -> list[Body]:
 
 
 def same(one, other) -> bool:
-    if (one.code, one.around, one.level, one.partners, one.robust, one.holders) != (
-        other.code,
-        other.around,
-        other.level,
-        other.partners,
-        other.robust,
-        other.holders,
-    ):
-        return False
-    return np.array_equal(one.faces, other.faces) and repr(one.coincident) == repr(other.coincident)
+    facts = ((each.code, each.around, each.level, each.partners, each.robust, repr(each.coincident)) for each in (one, other))
+    return next(facts) == next(facts)
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -447,20 +404,23 @@ def test_a_memory_changes_no_answer(seed):
             bodies[move] = Body(body.solid, random_matrix(rng, 2.0), body.priority, body.medium)
 
 
-def test_only_the_pairs_of_what_moved_are_looked_at_again():
+def test_only_the_pairs_of_what_moved_are_looked_at_again(monkeypatch):
     sphere = icosphere()
     bodies = [Body(sphere, at(1.5 * i), 1 + i % 3, i) for i in range(10)]
     memory = Memory()
+    compared = []
+
+    def compare(pairs, original=contacts._compare):
+        compared.append(len(pairs))
+        return original(pairs)
+
+    monkeypatch.setattr(contacts, "_compare", compare)
     analyse(bodies, memory)
-    assert memory.looked_at == 9
     analyse(bodies, memory)
-    assert memory.looked_at == 0
-    bodies[4] = Body(sphere, at(6.0, 0.1), 2, 4)
-    analyse(bodies, memory)
-    assert memory.looked_at == 2
-    bodies[4] = Body(sphere, at(0.0, 100.0), 2, 4)
-    analyse(bodies, memory)
-    assert memory.looked_at == 0
+    for place in ((6.0, 0.1), (0.0, 100.0)):
+        bodies[4] = Body(sphere, at(*place), 2, 4)
+        analyse(bodies, memory)
+    assert compared == [9, 0, 2, 0]
 
 
 def test_far_from_the_origin_the_answer_is_the_same():
@@ -583,7 +543,7 @@ def test_many_pairs_at_once_are_what_each_is_alone(seed):
     pairs = [(places[i], places[j]) for i in range(10) for j in range(i)]
     for (one, two), pair in zip(contacts._compare(pairs), pairs, strict=True):
         for side, alone in zip((one, two), contacts._compare([pair])[0]):
-            for name in ("touching", "inside", "coincident", "signs", "whole"):
+            for name in ("held", "crosses", "coincident", "signs", "whole"):
                 assert np.array_equal(getattr(side, name), getattr(alone, name))
 
 
@@ -647,7 +607,7 @@ def test_boxes_of_islands_leave_out_no_pair_that_touches(seed):
     for i in range(40):
         for j in range(i):
             sides = contacts._compare([(contacts._Placed(solids[i], np.eye(4)), contacts._Placed(solids[j], np.eye(4)))])
-            if sides[0][0].concerned:
+            if sides[0][0].crosses:
                 touching += 1
                 assert tuple(sorted((island[i], island[j]))) in pairs
     assert touching > 10

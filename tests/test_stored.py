@@ -158,19 +158,16 @@ def test_a_damaged_node_group_is_named_until_the_scene_is_prepared():
 ATTRIBUTES = [("FLOAT_COLOR", "CORNER"), ("INT8", "POINT"), ("BOOLEAN", "FACE"), ("STRING", "POINT"), ("FLOAT", "EDGE")]
 
 
-@pytest.mark.parametrize("name", (node_group.FACE_ATTRIBUTE, OFFSET_ATTRIBUTE))
-def test_attributes_of_another_form_are_replaced_where_ours_are_needed(name):
+def test_attributes_of_another_form_are_replaced_where_ours_are_needed():
     scene = build()
     for kind, domain in ATTRIBUTES:
         clear_analysis(scene)
         for obj in (obj for obj in scene.objects if obj.type == "MESH"):
             obj.modifiers.clear()
-            for attribute in [each for each in obj.data.attributes if each.name.startswith(name)]:
+            for attribute in [each for each in obj.data.attributes if each.name.startswith(OFFSET_ATTRIBUTE)]:
                 obj.data.attributes.remove(attribute)
-            obj.data.attributes.new(name, kind, domain)
-        assert {"Ball", "Water"} <= set(nd.prepare(scene).found.partly)
-        attribute = bpy.data.objects["Ball"].data.attributes[node_group.FACE_ATTRIBUTE]
-        assert (attribute.data_type, attribute.domain) == ("INT8", "FACE")
+            obj.data.attributes.new(OFFSET_ATTRIBUTE, kind, domain)
+        nd.prepare(scene)
         parted = [obj for obj in scene.objects if any(map(is_offset, obj.modifiers))]
         assert parted
         for obj in parted:
@@ -178,8 +175,18 @@ def test_attributes_of_another_form_are_replaced_where_ours_are_needed(name):
             assert ("FLOAT_VECTOR", "POINT") in [(each.data_type, each.domain) for each in offsets]
         clear_analysis(scene)
         # What was never ours stays.
-        far = bpy.data.objects["Far"].data.attributes[name]
+        far = bpy.data.objects["Far"].data.attributes[OFFSET_ATTRIBUTE]
         assert (far.data_type, far.domain) == (kind, domain)
+
+
+@pytest.mark.parametrize("end", (nd.analyse, clear_analysis))
+def test_what_older_versions_told_the_faces_of_a_mesh_is_taken_away(end):
+    scene = build()
+    ball, far = (bpy.data.objects[name].data.attributes for name in ("Ball", "Far"))
+    ball.new("nd_outside", "INT8", "FACE")
+    far.new("nd_outside", "FLOAT", "FACE")  # somebody else's
+    end(scene)
+    assert "nd_outside" not in ball and "nd_outside" in far
 
 
 def test_a_modifier_by_our_name_that_does_something_else_is_not_trusted():
