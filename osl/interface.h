@@ -38,14 +38,14 @@ Interface resolve_interface(Medium own, Outside told, int cut, int wants_priorit
   if (known)
     inner.priority = shaded_priority(own.priority);
   int exists = 1;
-  if (cut && cut_outside(known || wants_priority, curves, wavelength, told.scene, outer, exists)) {
-    s.valid = exists;
-    outer_holders = 1;
-  }
-  else if (always_air) {
+  if (always_air) {
     int traced = 1;
     if (spot_check())
       s.mistold = (lies_in_a_medium(P, away, cut, traced) && lies_in_a_medium(P, askew(away), cut, traced)) || !traced;
+  }
+  else if (cut && cut_outside(known || wants_priority, curves, wavelength, told.scene, outer, exists)) {
+    s.valid = exists;
+    outer_holders = 1;
   }
   else {
     int outside = told.outside;
