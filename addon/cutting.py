@@ -11,10 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cache
 from hashlib import sha256
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 
 from . import analysis
 from .animation import curves, is_animated
@@ -45,7 +47,15 @@ from .media import CUT_OF, HIDDEN_BY_CUT, get_priority, is_cut_surface, is_rende
 from .node_group import CUT, has_analysis
 from .parameters import PRIORITY_PROPERTY
 from .shapes import content_of
-from .trees import is_plugged, shows_other_volume, shows_others_blindly
+from .trees import (
+    is_plugged,
+    read_attributes,
+    reads_generated,
+    reads_whole_mesh,
+    shows_other_volume,
+    shows_others,
+    shows_others_blindly,
+)
 
 COLLECTION = "Nested Dielectric Cut"
 SUFFIX = " (cut)"
@@ -286,6 +296,10 @@ def make_plan(scene: bpy.types.Scene, scripted: bool = False) -> tuple[Plan, Cut
     moving = set(objects) if scripted else {obj for obj in objects if analysis.may_change(obj)}
     known = None if moving else _surroundings(scene, objects)
     touching = _touching(objects, moving, known)
+    whole = _needed_whole(scene, objects, touching)
+    for obj in whole - hindered.keys():
+        if any(_layer_of(other) == _layer_of(obj) for other in touching[obj]):
+            hindered[obj] = "overlaps another of its medium, and its surface is needed whole: it has colour, labels or other shaders"
     asking: list[tuple[str, str]] = []
     chosen: list[bpy.types.Object] = []
     for group in _components(objects, touching):
@@ -295,11 +309,16 @@ def make_plan(scene: bpy.types.Scene, scripted: bool = False) -> tuple[Plan, Cut
             asking += [(obj.name, f"may meet {bad[0].name!r}, which is not cut") for obj in group if obj not in hindered]
         elif len(group) > 1 and any(known is None or known[obj].may_cross for obj in group):
             chosen += group
-    layers, pairs = _layers(scene, chosen, moving, touching, known)
+    layers, pairs = _layers(chosen, whole, touching, known)
     if moving and len(layers) > MOST_LAYERS:
         reason = f"moves among media of more than {MOST_LAYERS} priorities and materials"
-        return Plan((), frozenset(), False), Cut((), (*asking, *((obj.name, reason) for obj in chosen)))
-    return Plan(layers, pairs, bool(moving)), Cut(tuple(obj.name for obj in chosen), tuple(asking))
+        return Plan(), Cut((), (*asking, *((obj.name, reason) for obj in chosen)))
+    plan = Plan(layers, pairs, bool(moving), _attributes(scene, chosen))
+    return plan, Cut(tuple(obj.name for obj in chosen), tuple(asking))
+
+
+def _layer_of(obj: bpy.types.Object) -> tuple[int, bpy.types.Material]:
+    return get_priority(obj), medium_material(obj)
 
 
 def _in_shown_collections(collection: bpy.types.Collection) -> set[bpy.types.Object]:
@@ -363,6 +382,11 @@ def _hindrance(obj: bpy.types.Object) -> str:
         return "has a priority that may change"
     if any(modifier.type == "SUBSURF" and modifier.use_adaptive_subdivision for modifier in obj.modifiers):
         return "is subdivided adaptively"
+    if len(set(obj.data.materials)) < len(obj.data.materials):
+        return "has one material in several slots"
+    deformed = obj.data.shape_keys is not None or not all(map(analysis.keeps_mesh, obj.modifiers))
+    if deformed and any(slot.material and slot.material.node_tree and reads_generated(slot.material) for slot in obj.material_slots):
+        return "has Generated coordinates, which are lost on a mesh that modifiers or shape keys change"
     return ""
 
 
@@ -385,7 +409,10 @@ def _material_hindrance(material: bpy.types.Material | None) -> str:
     priority = node.inputs["Priority"]
     if priority.is_linked or is_animated(material.node_tree, priority):
         return "has a priority that may change"
-    return "has a volume of its own" if shows_other_volume(material) else ""
+    if shows_other_volume(material):
+        return "has a volume of its own"
+    whole = reads_whole_mesh(material)
+    return f"has {whole} in {material.name!r}, which is another on part of a mesh" if whole else ""
 
 
 def _shown_otherwise(scene: bpy.types.Scene, objects: Iterable[bpy.types.Object]) -> dict[bpy.types.Object, str]:
@@ -465,10 +492,10 @@ def _touching(
     return touching
 
 
-def _box(obj: bpy.types.Object) -> np.ndarray:
-    """(2, 3) lowest and highest corner of an object in the world."""
+def _box(obj: bpy.types.Object, matrix: Matrix | None = None) -> np.ndarray:
+    """(2, 3) lowest and highest corner of an object in the world, or where a matrix places it."""
     corners = np.array([tuple(corner) for corner in obj.bound_box])
-    matrix = np.array(obj.matrix_world)
+    matrix = np.array(obj.matrix_world if matrix is None else matrix)
     corners = corners @ matrix[:3, :3].T + matrix[:3, 3]
     return np.array([corners.min(axis=0), corners.max(axis=0)])
 
@@ -490,12 +517,12 @@ def _components(objects: Iterable[bpy.types.Object], touching: dict) -> Iterable
 
 
 def _layers(
-    scene: bpy.types.Scene, objects: Sequence[bpy.types.Object], moving: set, touching: dict, known: dict | None
+    objects: Sequence[bpy.types.Object], whole: set[bpy.types.Object], touching: dict, known: dict | None
 ) -> tuple[tuple[Layer, ...], frozenset[tuple[int, int]]]:
     """The layers of media that are cut, and which of them may cross."""
     grouped: dict[tuple, list[bpy.types.Object]] = {}
     for obj in sorted(objects, key=lambda obj: (get_priority(obj), medium_material(obj).name_full, obj.name_full)):
-        grouped.setdefault((get_priority(obj), medium_material(obj)), []).append(obj)
+        grouped.setdefault(_layer_of(obj), []).append(obj)
     place = {obj: index for index, members in enumerate(grouped.values()) for obj in members}
     crossing = set(objects)
     if known is not None:
@@ -507,11 +534,8 @@ def _layers(
         for other in touching[obj]
         if other in crossing and place[obj] != place[other]
     }
-    near = _others_near(scene, objects)
     layers = []
     for (priority, material), members in grouped.items():
-        blind = shows_others_blindly(material)
-        absorbs = _may_absorb(material)
         constant = tuple((obj, _around(obj, known, place)) for obj in members if obj not in crossing)
         layers.append(
             Layer(
@@ -521,7 +545,7 @@ def _layers(
                 constant,
                 overlapping=not set(members).isdisjoint(other for obj in members for other in touching[obj]),
                 tells_more=_tells_more(material),
-                keeps_hidden=blind or any((absorbs and obj in near) or _has_labels(obj, material) for obj in members),
+                keeps_hidden=not whole.isdisjoint(members),
             )
         )
     return tuple(layers), frozenset(pairs)
@@ -534,7 +558,7 @@ def _lies_within(obj: bpy.types.Object, known: dict[bpy.types.Object, _Surroundi
     around = known[obj].around
     if known[obj].code != MEDIUM:
         return False
-    return all(known[each].is_simple for each in layers[get_priority(around), medium_material(around)])
+    return all(known[each].is_simple for each in layers[_layer_of(around)])
 
 
 def _around(obj: bpy.types.Object, known: dict, place: dict[bpy.types.Object, int]) -> int | None:
@@ -560,26 +584,60 @@ def _may_absorb(material: bpy.types.Material) -> bool:
     return min(socket.default_value[:3]) < 1.0 or socket.is_linked or is_animated(material.node_tree, socket)
 
 
-def _has_labels(obj: bpy.types.Object, material: bpy.types.Material) -> bool:
-    return any(slot.material != material for slot in obj.material_slots)
+def _needed_whole(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object], touching: dict) -> set[bpy.types.Object]:
+    """Media whose surfaces are needed inside winners, too: they show what is no medium, or their volumes are entered and left
+    by them where light may start or end inside.
+    """
+    labelled = {obj for obj in objects if any(slot.material != medium_material(obj) for slot in obj.material_slots)}
+    mixed = {material: shows_others(material) for material in set(map(medium_material, objects))}
+    dirty = {obj for obj in objects if mixed[medium_material(obj)]} | labelled
+    near = _others_near(scene, objects) | dirty.union(*(touching[obj] for obj in dirty))
+    blind = {obj for obj in dirty if shows_others_blindly(medium_material(obj))}
+    return labelled | blind | {obj for obj in near if _may_absorb(medium_material(obj))}
 
 
 def _others_near(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> set[bpy.types.Object]:
-    """Media that rays may enter or leave other than by a medium's surface: at things, lamps and the camera inside."""
+    """Media in whose boxes things that are no media, lamps or the camera may be."""
     if not objects:
         return set()
+    own = set(objects)
     boxes = np.array([_box(obj) for obj in objects])
-    others = []
+    others = [analysis.EVERYWHERE if analysis.may_change(lamp) else lamp_box(lamp) for lamp in lamps(scene)]
+    shown = set()
+    for instance in scene.view_layers[0].depsgraph.object_instances:
+        obj = instance.object.original
+        shown.add(obj)
+        if obj.type in analysis.SHAPED and obj not in own and not is_cut_surface(obj):
+            moves = analysis.may_change(instance.parent.original if instance.is_instance else obj)
+            others.append(analysis.EVERYWHERE if moves else _box(instance.object, instance.matrix_world))
     for obj in scene.objects:
-        if obj.type in ("EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE") or is_cut_surface(obj):
-            continue
-        if medium_material(obj) is None and not obj.hide_render:
-            place = lamp_box(obj) if obj.type == "LIGHT" else _box(obj) if obj.type != "CAMERA" else np.array(obj.matrix_world)[None, :3, 3].repeat(2, 0)
-            others.append(analysis.EVERYWHERE if analysis.may_change(obj) and obj.type != "LIGHT" else place)
+        if obj.type == "CAMERA":
+            place = np.array(obj.matrix_world)[:3, 3]
+            others.append(analysis.EVERYWHERE if analysis.may_change(obj) else np.array([place, place]))
+        elif obj.type in analysis.SHAPED and obj not in shown | own and not obj.hide_render and not is_cut_surface(obj):
+            others.append(analysis.EVERYWHERE)
     meets = np.zeros(len(boxes), dtype=bool)
     for low, high in others:
         meets |= np.all((boxes[:, 0] <= high) & (boxes[:, 1] >= low), axis=1)
     return {obj for obj, near in zip(objects, meets) if near}
+
+
+def _attributes(scene: bpy.types.Scene, objects: Iterable[bpy.types.Object]) -> dict[bpy.types.Object, tuple[str, ...]]:
+    """Attributes of media that their materials read and that are not of corners."""
+    depsgraph = scene.view_layers[0].depsgraph
+    names = cache(read_attributes)
+    found = {}
+    for obj in objects:
+        mesh = obj.evaluated_get(depsgraph).data
+        wanted = set().union(*(names(slot.material) for slot in obj.material_slots if slot.material and slot.material.node_tree))
+        if "" in wanted:
+            index = mesh.color_attributes.render_color_index
+            wanted |= {each.name for each in mesh.color_attributes[max(index, 0) : index + 1]}
+        domains = {each.name: each.domain for each in mesh.attributes} | {group.name: "POINT" for group in obj.vertex_groups}
+        chosen = tuple(sorted(name for name in wanted if domains.get(name, "CORNER") != "CORNER" and name != "position"))
+        if chosen:
+            found[obj] = chosen
+    return found
 
 
 # Showing ------------------------------------------------------------------------------------------------------------
@@ -695,6 +753,7 @@ def _described(plan: Plan) -> str:
             ],
             sorted(plan.pairs),
             plan.may_part,
+            sorted((obj.name_full, names) for obj, names in plan.attributes.items()),
         )
     )
     return sha256(text.encode()).hexdigest()

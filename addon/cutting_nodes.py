@@ -43,6 +43,9 @@ CHUNK = 24
 BODY = "nd_body"
 NORMAL = "nd_normal"
 
+ATTRIBUTES = "nd_attributes"
+"""Custom property of a group that reads a medium: whose attributes it moves to corners."""
+
 PART = 32
 """Media whose faces stand together: whoever picks one's looks at each of them."""
 
@@ -106,11 +109,13 @@ class Plan:
     :param layers: the strongest first.
     :param pairs: places of layers that may cross, the stronger one's first.
     :param may_part: which of them cross has to be looked at in every frame.
+    :param attributes: those of media that are not of corners and that materials read.
     """
 
-    layers: tuple[Layer, ...]
-    pairs: frozenset[tuple[int, int]]
-    may_part: bool
+    layers: tuple[Layer, ...] = ()
+    pairs: frozenset[tuple[int, int]] = frozenset()
+    may_part: bool = False
+    attributes: dict[bpy.types.Object, tuple[str, ...]] = field(default_factory=dict)
 
     def numbers(self) -> dict[bpy.types.Object, int]:
         """The number of every medium."""
@@ -304,7 +309,7 @@ def ensure_surface_tree() -> bpy.types.NodeTree:
     cut = _cut_by(build)
     picked = _picked(build, cut, build.compare(build.attribute(BODY, "INT"), "EQUAL", build.inputs.outputs[BODY_INPUT]))
     faces = build.node("GeometryNodeRealizeInstances", Geometry=picked).outputs[0]
-    shown = build.joined([first.outputs["Selection"], faces])
+    shown = build.joined([first.outputs["Selection"], _as_outside_in(build, cut, faces)])
     smooth = build.count(shown, "FACE", build.tree.nodes.new("GeometryNodeInputShadeSmooth").outputs[0])
     shown = build.switch(build.compare(smooth, "GREATER_THAN", 0.5, "FLOAT"), shown, _with_normals(build, shown, cut))
     frame = _output(build.tree.nodes.new("GeometryNodeInputSceneTime"), "Frame")
@@ -364,22 +369,35 @@ def _with_normals(build: _Builder, geometry, cut: bpy.types.Node) -> bpy.types.N
 def _mesh_of(build: _Builder, obj) -> bpy.types.NodeSocket:
     """What another object shows, seen from this one's space."""
     info = build.node("GeometryNodeObjectInfo", properties={"transform_space": "RELATIVE"}, Object=obj)
-    return build.node("GeometryNodeRealizeInstances", Geometry=info.outputs["Geometry"]).outputs[0]
+    mesh = build.node("GeometryNodeRealizeInstances", Geometry=info.outputs["Geometry"]).outputs[0]
+    return _as_outside_in(build, info, mesh)
 
 
-def _ensure_body_tree() -> bpy.types.NodeTree:
-    """The group that reads one medium: its faces with its number and normals, and whether it is closed."""
-    tree = _find_tree(BODY_GROUP)
-    if tree is not None:
-        return tree
+def _as_outside_in(build: _Builder, info: bpy.types.Node, mesh) -> bpy.types.NodeSocket:
+    """A mesh whose faces look outwards as they did in the other object's space: mirroring turns them."""
+    determinant = build.node("FunctionNodeMatrixDeterminant", Matrix=info.outputs["Transform"]).outputs[0]
+    return build.switch(build.compare(determinant, "LESS_THAN", 0.0, "FLOAT"), mesh, build.flipped(mesh))
+
+
+def _ensure_body_tree(attributes: tuple[str, ...]) -> bpy.types.NodeTree:
+    """The group that reads one medium: its faces with its number and normals, and whether it is closed.
+
+    :param attributes: of points, which the solver leaves at 0 where it makes new ones; those of corners are interpolated.
+    """
+    for tree in bpy.data.node_groups:
+        if tree.library is None and tuple(tree.get(ATTRIBUTES, ("",))) == attributes:
+            return tree
     tree = _new_tree(
         BODY_GROUP,
         {OWN_INPUT: "NodeSocketObject", BODY_INPUT: "NodeSocketInt"},
         GEOMETRY | {"Closed": "NodeSocketBool"},
         "A medium that is to be cut",
     )
+    tree[ATTRIBUTES] = list(attributes) or [""]
     build = _Builder(tree)
     mesh = _mesh_of(build, build.inputs.outputs[OWN_INPUT])
+    for name in attributes:
+        mesh = _by_corner(build, mesh, name)
     smooth = build.count(mesh, "FACE", build.tree.nodes.new("GeometryNodeInputShadeSmooth").outputs[0])
     normal = build.tree.nodes.new("GeometryNodeInputNormal").outputs["Normal"]
     with_normals = build.stored(mesh, NORMAL, normal, "FLOAT_VECTOR", "CORNER")
@@ -393,11 +411,20 @@ def _ensure_body_tree() -> bpy.types.NodeTree:
     return tree
 
 
-def _bodies_tree(bodies: Sequence[tuple[bpy.types.Object, int]], overlapping: bool) -> bpy.types.NodeTree:
+def _by_corner(build: _Builder, mesh, name: str) -> bpy.types.NodeSocket:
+    """A mesh with an attribute at its corners in place of its points, as a colour."""
+    capture = build.node("GeometryNodeCaptureAttribute", properties={"domain": "CORNER"}, Geometry=mesh)
+    capture.capture_items.new("RGBA", name)
+    build.put(capture.inputs[name], build.attribute(name, "FLOAT_COLOR"))
+    removed = build.node("GeometryNodeRemoveAttribute", Geometry=capture.outputs["Geometry"], Name=name).outputs[0]
+    return build.stored(removed, name, capture.outputs[name], "FLOAT_COLOR", "CORNER")
+
+
+def _bodies_tree(plan: Plan, bodies: Sequence[tuple[bpy.types.Object, int]], overlapping: bool) -> bpy.types.NodeTree:
     """A group that reads some media, as one body where they overlap."""
     tree = _new_tree(f"{BODY_GROUP}s", {}, GEOMETRY | {"Closed": "NodeSocketBool"}, "Media that are to be cut")
     build = _Builder(tree)
-    read = [_body(build, obj, number) for obj, number in bodies]
+    read = [_body(build, plan, obj, number) for obj, number in bodies]
     geometries = [geometry for geometry, _ in read]
     build.returns(
         Geometry=_united_where_they_meet(build, geometries) if overlapping else build.joined(geometries),
@@ -406,21 +433,23 @@ def _bodies_tree(bodies: Sequence[tuple[bpy.types.Object, int]], overlapping: bo
     return tree
 
 
-def _body(build: _Builder, obj: bpy.types.Object, number: int) -> tuple[bpy.types.NodeSocket, bpy.types.NodeSocket]:
-    node = build.node("GeometryNodeGroup", properties={"node_tree": _ensure_body_tree()})
+def _body(
+    build: _Builder, plan: Plan, obj: bpy.types.Object, number: int
+) -> tuple[bpy.types.NodeSocket, bpy.types.NodeSocket]:
+    node = build.node("GeometryNodeGroup", properties={"node_tree": _ensure_body_tree(plan.attributes.get(obj, ()))})
     node.inputs[OWN_INPUT].default_value = obj
     node.inputs[BODY_INPUT].default_value = number
     return node.outputs["Geometry"], node.outputs["Closed"]
 
 
 def _read(
-    build: _Builder, bodies: Sequence[tuple[bpy.types.Object, int]], overlapping: bool = False
+    build: _Builder, plan: Plan, bodies: Sequence[tuple[bpy.types.Object, int]], overlapping: bool = False
 ) -> tuple[list[bpy.types.NodeSocket], list[bpy.types.NodeSocket]]:
     """Geometries of media, many of them in one, and whether these are closed."""
     if len(bodies) <= CHUNK:
-        pairs = [_body(build, *body) for body in bodies]
+        pairs = [_body(build, plan, *body) for body in bodies]
     else:
-        trees = [_bodies_tree(bodies[start : start + CHUNK], overlapping) for start in range(0, len(bodies), CHUNK)]
+        trees = [_bodies_tree(plan, bodies[start : start + CHUNK], overlapping) for start in range(0, len(bodies), CHUNK)]
         nodes = [build.node("GeometryNodeGroup", properties={"node_tree": tree}) for tree in trees]
         pairs = [(node.outputs["Geometry"], node.outputs["Closed"]) for node in nodes]
     return [geometry for geometry, _ in pairs], [closed for _, closed in pairs]
@@ -458,13 +487,13 @@ def make_cut_tree(plan: Plan) -> bpy.types.NodeTree:
     layers: dict[int, bpy.types.NodeSocket] = {}
     for place, layer in enumerate(plan.layers):
         if layer.crossing:
-            geometries, sound = _read(build, [(obj, numbers[obj]) for obj in layer.crossing], layer.overlapping)
+            geometries, sound = _read(build, plan, [(obj, numbers[obj]) for obj in layer.crossing], layer.overlapping)
             closed += sound
             whole += geometries
             layers[place] = _united_where_they_meet(build, geometries) if layer.overlapping else build.joined(geometries)
         for around in sorted({around for _, around in layer.constant}, key=str):
             alike = [(obj, numbers[obj]) for obj, other in layer.constant if other == around]
-            geometries, sound = _read(build, alike)
+            geometries, sound = _read(build, plan, alike)
             closed += sound
             whole += geometries
             pieces.append(_told(build, plan, build.joined(geometries), around))

@@ -51,8 +51,52 @@ def shows_others_blindly(material: bpy.types.Material) -> bool:
     sources = list(_sources(material, "CYCLES", "Surface"))
     dielectrics = [place[-1] for place, name in sources if name == CYCLES_OUTPUT and is_dielectric(place[-1])]
     asked = any(output.is_linked for node in dielectrics for output in node.outputs if output.name in MASKS)
-    others = any(not is_dielectric(place[-1]) and place[-1].type != "BSDF_TRANSPARENT" for place, _ in sources)
-    return bool(dielectrics) and others and not asked
+    return bool(dielectrics) and shows_others(material) and not asked
+
+
+def shows_others(material: bpy.types.Material) -> bool:
+    """Whether shaders at which light may end reach the output that Cycles renders beside a nested dielectric."""
+    sources = _sources(material, "CYCLES", "Surface")
+    return any(not is_dielectric(place[-1]) and place[-1].type != "BSDF_TRANSPARENT" for place, _ in sources)
+
+
+def own_nodes(tree: bpy.types.NodeTree) -> Iterator[bpy.types.Node]:
+    """Yield an artist's nodes of a tree, those in groups too."""
+    for node in tree.nodes:
+        yield node
+        if node.type == "GROUP" and node.node_tree is not None and not is_dielectric(node):
+            yield from own_nodes(node.node_tree)
+
+
+def read_attributes(material: bpy.types.Material) -> set[str]:
+    """Return the names of a mesh's attributes that a material reads; empty stands for its active colours."""
+    nodes = list(own_nodes(material.node_tree))
+    names = {node.attribute_name for node in nodes if node.type == "ATTRIBUTE" and node.attribute_type == "GEOMETRY"}
+    return names | {node.layer_name for node in nodes if node.type == "VERTEX_COLOR"}
+
+
+_WHOLE = {"OBJECT_INFO": {"Random"}, "NEW_GEOMETRY": {"Pointiness", "Random Per Island"}}
+"""Outputs of nodes that depend on an object's name, or on all of its mesh."""
+
+
+def reads_whole_mesh(material: bpy.types.Material) -> str:
+    """Return the name of a node or output by which a material looks another way on part of a mesh, or nothing."""
+    for node in own_nodes(material.node_tree):
+        if node.type in ("BEVEL", "AMBIENT_OCCLUSION", "WIREFRAME"):
+            return node.bl_label
+        for output in node.outputs if node.type in _WHOLE else ():
+            if output.is_linked and output.name in _WHOLE[node.type]:
+                return output.name
+    return ""
+
+
+def reads_generated(material: bpy.types.Material) -> bool:
+    """Whether a material reads Generated coordinates, as textures do by themselves."""
+    return any(
+        (node.type == "TEX_COORD" and node.outputs["Generated"].is_linked)
+        or (node.type.startswith("TEX_") and "Vector" in node.inputs and not node.inputs["Vector"].is_linked)
+        for node in own_nodes(material.node_tree)
+    )
 
 
 def shows_other_volume(material: bpy.types.Material) -> bool:

@@ -738,3 +738,174 @@ def test_media_that_cannot_be_cut_ask_beside_those_that_are():
     assert not shell.hide_render and not core.hide_render
     cut = batches(SAMPLES, BATCHES)
     assert_same(cut, asking_picture())
+
+
+# More shapes and scenes ---------------------------------------------------------------------------------------------
+
+
+@pytest.mark.quick
+def test_a_scene_of_which_nothing_is_cut_is_prepared():
+    stage()
+    add_sphere("Ball", 1.0, medium("Dense", 1.5, 1))
+    assert nd.prepare(now(), cut=True).cut.media == ()
+
+
+@pytest.mark.parametrize("smooth", mostly_again([True, False]), ids=["smooth", "flat"])
+def test_mirrored_bodies_are_cut(smooth):
+    ball, block = two_bodies(smooth)
+    ball.scale.x = -1.0
+    assert_cut_is_right("Ball", "Block")
+
+
+def test_mirrored_bodies_of_one_medium_are_one_body():
+    ball, block = two_bodies()
+    ball.data.materials[0] = block.data.materials[0]
+    ball.scale.x = -1.0
+    add_sphere("Drop", 0.4, medium("Drop", 1.7, 0), location=(0.6, 0.0, 0.4))
+    assert_cut_is_right("Ball", "Block")
+
+
+@pytest.mark.parametrize("seed", mostly_again(range(2)))
+def test_random_bodies_of_which_some_are_mirrored(seed):
+    random_scene(seed, mirrored=True)
+    assert_cut_is_right()
+
+
+def test_an_attribute_of_one_name_on_faces_here_and_on_points_there():
+    for body, domain in zip(two_bodies(), ("FACE", "POINT")):
+        data = body.data.attributes.new("shade", "FLOAT", domain).data
+        values = np.arange(len(data)) % 2 if domain == "FACE" else np.ones(len(data))
+        data.foreach_set("value", values.astype(np.float32) * 0.9)
+        tree = body.data.materials[0].node_tree
+        node = tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_name = "shade"
+        tree.links.new(node.outputs["Fac"], tree.nodes[NODE].inputs["Refraction Scale"])
+    assert_cut_is_right("Ball", "Block")
+
+
+def test_what_a_collection_hides_from_renders_stays_hidden():
+    ball, block = two_bodies()
+    hidden = bpy.data.collections.new("Hidden")
+    now().collection.children.link(hidden)
+    hidden.hide_render = True
+    hidden.objects.link(block)
+    now().collection.objects.unlink(block)
+    assert_cut_is_right()
+
+
+def test_a_custom_property_that_is_keyframed():
+    for body in two_bodies():
+        body["amount"] = 0.9
+        body.keyframe_insert('["amount"]', frame=1)
+        body["amount"] = 0.1
+        body.keyframe_insert('["amount"]', frame=5)
+        tree = body.data.materials[0].node_tree
+        node = tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_type, node.attribute_name = "OBJECT", "amount"
+        tree.links.new(node.outputs["Fac"], tree.nodes[NODE].inputs["Refraction Scale"])
+    assert_frame_five_is_right()
+
+
+def custom_normals() -> None:
+    ball, _ = two_bodies(smooth=True)
+    normals = [(vertex.co * 1.0 + vertex.co.cross((0.0, 0.0, 0.3))).normalized() for vertex in ball.data.vertices]
+    ball.data.normals_split_custom_set_from_vertices(normals)
+
+
+def colours() -> None:
+    for body in two_bodies():
+        layer = body.data.color_attributes.new("Col", "FLOAT_COLOR", "POINT")
+        for vertex, each in zip(body.data.vertices, layer.data):
+            each.color = (abs(vertex.co.x), abs(vertex.co.y), abs(vertex.co.z), 1.0)
+        tree = body.data.materials[0].node_tree
+        node = tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_name = "Col"
+        tree.links.new(node.outputs["Color"], tree.nodes[NODE].inputs["Refraction Scale"])
+
+
+@pytest.mark.parametrize("build", [custom_normals, colours])
+def test_shading_of_points(build):
+    """The solver leaves attributes of points at 0 where it makes new ones."""
+    build()
+    assert_cut_is_right("Ball", "Block")
+
+
+def test_dirt_that_asks_where_the_surface_exists():
+    drink()
+    everywhere(lambda material: add_dirt(material, True))
+    assert_cut_is_as_told("Glass", "Water", "Ice")
+
+
+def test_an_instanced_spoon_in_tinted_media():
+    drink()
+    shelf = bpy.data.collections.new("Shelf")
+    rod = add_sphere("Rod", 0.2, diffuse(0.6), location=(0.4, 0.0, 0.0))
+    shelf.objects.link(rod)
+    now().collection.objects.unlink(rod)
+    empty = add("Empty", None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", shelf
+    assert_cut_is_as_told("Glass", "Water", "Ice")
+
+
+# What asks -----------------------------------------------------------------------------------------------------------
+
+
+def one_material_in_two_slots(ball):
+    ball.data.materials.append(ball.data.materials[0])
+
+
+def a_label_inside_another_of_its_medium(ball):
+    drop = add_sphere("Drop", 0.6, ball.data.materials[0], segments=24)
+    drop.location = (-0.3, -0.1, 0.5)
+    drop.data.materials.append(native("Red", "ShaderNodeBsdfDiffuse"))
+
+
+def twisted_with_generated_coordinates(ball):
+    modifier = ball.modifiers.new("Twist", "SIMPLE_DEFORM")
+    modifier.deform_method, modifier.angle, modifier.deform_axis = "TWIST", 2.0, "Z"
+    shade(ball, "ShaderNodeTexCoord", "Generated")
+
+
+def reading(kind, name):
+    def read(ball):
+        tree = ball.data.materials[0].node_tree
+        tree.links.new(tree.nodes.new(f"ShaderNode{kind}").outputs[name], tree.nodes[NODE].inputs["Refraction Scale"])
+
+    read.__name__ = name
+    return read
+
+
+def a_priority_that_is_keyframed(ball):
+    key(inputs_of(ball)["Priority"], "default_value", 2, 0)
+
+
+def in_a_second_scene(ball):
+    bpy.data.scenes.new("Other").collection.objects.link(ball)
+
+
+def blurring(ball):
+    key(ball, "location", (0, 0, 0), (1, 0, 0))
+    now().render.use_motion_blur = True
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize(
+    "change",
+    [
+        one_material_in_two_slots,
+        a_label_inside_another_of_its_medium,
+        twisted_with_generated_coordinates,
+        reading("ObjectInfo", "Random"),
+        reading("NewGeometry", "Random Per Island"),
+        reading("NewGeometry", "Pointiness"),
+        a_priority_that_is_keyframed,
+        in_a_second_scene,
+        blurring,
+    ],
+)
+def test_what_a_cut_would_change_asks_with_all_that_it_may_meet(change):
+    ball, block = two_bodies()
+    change(ball)
+    cut = nd.prepare(now(), cut=True).cut
+    assert not cut.media and {"Ball", "Block"} <= {name for name, _ in cut.asking}
+    assert not ball.hide_render and not block.hide_render
