@@ -162,6 +162,11 @@ class Found:
     coincident: tuple[tuple[str, str], ...] = ()
     doubts: tuple[tuple[str, str], ...] = ()
 
+    def without(self, cut: Iterable[str]) -> Found:
+        """Return what concerns renders of media of which some are cut, by name: their surfaces ask nothing."""
+        cut = set(cut)
+        return replace(self, asking=tuple(name for name in self.asking if name not in cut))
+
     def __str__(self) -> str:
         lines = [f"{name!r} {reason}, so all media ask the scene what surrounds them" for name, reason in self.doubts]
         lines += [

@@ -125,7 +125,8 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
     if parted:
         found = last_found(scene)
     problems += coincident + find_problems(scene)
-    return Preparation(tuple(stays + changes + parted), tuple(problems), found, len(media(scene)), update_cut(scene))
+    cut = update_cut(scene)
+    return Preparation(tuple(stays + changes + parted), tuple(problems), found.without(cut.media), len(media(scene)), cut)
 
 
 def _ensure_random_time(scene: bpy.types.Scene, changed: Changed) -> list[str]:

@@ -303,7 +303,8 @@ def draw_analysis(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
             layout, context, "All media ask the scene what surrounds them; Prepare Scene looks at it beforehand", "INFO"
         )
     else:
-        for line in str(found).splitlines():
+        cut = last_cut(context.scene)
+        for line in str(found.without(cut.media) if cut else found).splitlines():
             draw_text(layout, context, line, "INFO")
     layout.operator(ClearAnalysis.bl_idname, icon="X")
 
