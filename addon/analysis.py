@@ -165,7 +165,8 @@ class Found:
     def without(self, cut: Iterable[str]) -> Found:
         """Return what concerns renders of media of which some are cut, by name: their surfaces ask nothing."""
         cut = set(cut)
-        return replace(self, asking=tuple(name for name in self.asking if name not in cut))
+        asking = tuple(name for name in self.asking if name not in cut)
+        return replace(self, asking=asking, doubts=self.doubts if asking else ())
 
     def __str__(self) -> str:
         lines = [f"{name!r} {reason}, so all media ask the scene what surrounds them" for name, reason in self.doubts]
