@@ -384,8 +384,9 @@ def _ensure_body_tree(attributes: tuple[str, ...]) -> bpy.types.NodeTree:
 
     :param attributes: of points, which the solver leaves at 0 where it makes new ones; those of corners are interpolated.
     """
+    marked = list(attributes) or [""]
     for tree in bpy.data.node_groups:
-        if tree.library is None and tuple(tree.get(ATTRIBUTES, ("",))) == attributes:
+        if tree.library is None and ATTRIBUTES in tree and list(tree[ATTRIBUTES]) == marked:
             return tree
     tree = _new_tree(
         BODY_GROUP,
@@ -393,7 +394,7 @@ def _ensure_body_tree(attributes: tuple[str, ...]) -> bpy.types.NodeTree:
         GEOMETRY | {"Closed": "NodeSocketBool"},
         "A medium that is to be cut",
     )
-    tree[ATTRIBUTES] = list(attributes) or [""]
+    tree[ATTRIBUTES] = marked
     build = _Builder(tree)
     mesh = _mesh_of(build, build.inputs.outputs[OWN_INPUT])
     for name in attributes:

@@ -276,6 +276,7 @@ def test_the_shader_takes_exactly_the_tables_parameters():
         "AnalysedScene",
         "AnalysisHolds",
         "ByVolume",
+        "Cut",
         "GivesBack",
         "Requests",
         "FrontIOR",
