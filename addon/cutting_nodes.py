@@ -551,12 +551,20 @@ def _cut(
             winners = geometry if winners is None else build.joined([winners, geometry])
             continue
         first = numbers[plan.layers[place].bodies[0]]
-        outer = build.flipped(build.numbered(build.less(geometry, winners), 0, first))
-        found = _told(build, plan, outer, place)
+        end = first + len(plan.layers[place].bodies)
+        left = build.less(geometry, winners)
+        found = [_told(build, plan, build.flipped(build.numbered(left, 0, first)), place)]
+        is_last = place == max(layers)
+        cut = build.less(winners, geometry) if is_last or plan.layers[place].keeps_hidden else None
         if plan.layers[place].keeps_hidden:
-            hidden = build.numbered(build.less(winners, geometry), first, first + len(plan.layers[place].bodies))
-            found = build.joined([found, _told(build, plan, build.flipped(hidden), HIDDEN)])
-        union = build.united(winners, geometry)
+            found.append(_told(build, plan, build.flipped(build.numbered(cut, first, end)), HIDDEN))
+        # What wins over nothing needs no union: the solver's time goes by what it returns.
+        union = (
+            build.joined([build.numbered(left, first, end), build.numbered(cut, 0, first)])
+            if is_last
+            else build.united(winners, geometry)
+        )
+        found = build.joined(found)
         if plan.may_part:
             meets = build.all_of([build.meet(boxes[other], boxes[place]) for other in stronger], "OR")
             found = build.switch(meets, None, found)
