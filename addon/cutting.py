@@ -105,17 +105,22 @@ def cut_surfaces(scene: bpy.types.Scene, scripted: bool = False) -> Cut:
     _show(scene, plan)
     _drop_if_changed(scene, plan)
     show_strays()
-    _last[scene.session_uid] = found
+    _last[scene.session_uid] = found, _settings(scene)
     return found
 
 
-_last: dict[int, Cut] = {}
-"""What was found of each scene in this session, by its number."""
+_last: dict[int, tuple[Cut, tuple]] = {}
+"""What was found of each scene in this session, by its number, and with which settings."""
 
 
 def last_cut(scene: bpy.types.Scene) -> Cut | None:
     """Return what was last found of a scene that is cut; None if it is not, or nobody has looked in this session."""
-    return _last.get(scene.session_uid) if is_cut(scene) else None
+    return _last[scene.session_uid][0] if is_cut(scene) and scene.session_uid in _last else None
+
+
+def _settings(scene: bpy.types.Scene) -> tuple:
+    """Settings of a scene by which media are cut or not."""
+    return scene.render.use_motion_blur, scene.render.motion_blur_shutter > 0.0
 
 
 def show_whole(scene: bpy.types.Scene) -> bool:
@@ -238,7 +243,6 @@ def show_strays() -> None:
 
 
 _CONCERNED = (
-    bpy.types.Scene,
     bpy.types.Object,
     bpy.types.Mesh,
     bpy.types.Material,
@@ -247,9 +251,18 @@ _CONCERNED = (
 )
 
 
-def concerns(depsgraph: bpy.types.Depsgraph) -> bool:
-    """Tell whether an update may change which media cross, or how they are shown."""
-    return any(isinstance(update.id, _CONCERNED) for update in depsgraph.updates)
+def concerns(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
+    """Tell whether an update may change which media of a scene that is cut cross, or how they are shown. To select does not."""
+    known = _last.get(scene.session_uid)
+    return is_cut(scene) and (
+        known is None
+        or known[1] != _settings(scene)
+        or any(
+            isinstance(update.id, _CONCERNED)
+            and (update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading)
+            for update in depsgraph.updates
+        )
+    )
 
 
 # Showing ------------------------------------------------------------------------------------------------------------

@@ -159,7 +159,7 @@ def analyse_after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
 @bpy.app.handlers.persistent
 def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Follow what moves, changes, comes and goes. In a window nothing is to wait while the mouse drags it."""
-    if cutting.is_cut(scene) and has_window() and cutting.concerns(depsgraph):
+    if has_window() and cutting.concerns(scene, depsgraph):
         _wait_for_rest()
     if not analysis.is_analysed(scene):
         return

@@ -96,6 +96,28 @@ def test_bringing_it_up_to_date_changes_nothing_where_nothing_has_changed(regist
 
 
 @pytest.mark.quick
+def test_what_may_change_the_cut_is_looked_at_in_a_window_and_a_selection_is_not(registered, monkeypatch):
+    scene = bpy.context.scene
+    add_crossing()
+    nd.prepare(scene, cut=True)
+    bpy.context.view_layer.update()
+    waits = []
+    monkeypatch.setattr(live, "has_window", lambda: True)
+    monkeypatch.setattr(live, "_wait_for_rest", lambda: waits.append(True))
+
+    def waits_after(change):
+        waits.clear()
+        change()
+        bpy.context.view_layer.update()
+        return bool(waits)
+
+    water = scene.objects["Water"]
+    assert not waits_after(lambda: water.select_set(not water.select_get()))
+    assert waits_after(lambda: setattr(water.location, "x", 0.1))
+    assert waits_after(lambda: setattr(scene.render, "use_motion_blur", True))
+
+
+@pytest.mark.quick
 def test_media_that_are_appended_without_their_surfaces_are_rendered(registered, tmp_path):
     add_crossing()
     nd.prepare(bpy.context.scene, cut=True)
