@@ -49,7 +49,9 @@ def test_the_users_own_scene_is_left_alone(scene):
 def test_the_demo_command_renders_the_picture(tmp_path):
     done = run("demo", "-o", tmp_path / "picture.png", "--samples", 1, "--save", tmp_path / "scene.blend")
     assert done.returncode == 0, done.stderr
-    assert done.stdout.strip().endswith(str(tmp_path / "picture.png"))
+    *_, path, saving = done.stdout.strip().splitlines()
+    assert path == str(tmp_path / "picture.png")
+    assert float(saving.split()[3]) > 0.0, saving
     picture = read_picture(tmp_path / "picture.png")
     assert picture.shape[:2] == (720, 720)
     # The stripes of the straw are the only saturated red, and they are seen above the glass and through the water.
