@@ -846,12 +846,12 @@ def _outsides(survey: _Survey) -> dict[bpy.types.Object, Outside]:
     """What each medium is told: what holds for all of its instances."""
     doubtful = bool(survey.doubts) or any(row.doubt for row in survey.rows if row.medium)
     boxes = np.array([row.box for row in survey.bodies]).reshape(-1, 2, 3)
-    foreign = _meets(boxes, [row.box for row in survey.rows if not row.medium])
+    foreign = meets(boxes, [row.box for row in survey.rows if not row.medium])
     foreign |= np.array([bool(_labels(survey, row.obj)) for row in survey.bodies], dtype=bool)
     # Bodies of one priority that overlap are one: a ray may go from one to the next.
     priorities = np.array([row.body.priority for row in survey.bodies])
     foreign = np.isin(priorities, priorities[foreign])
-    near_unclear = _meets(boxes, [row.box for row in survey.vague])
+    near_unclear = meets(boxes, [row.box for row in survey.vague])
     asking = set(np.flatnonzero(near_unclear | doubtful).tolist())
     volumes, givers = _left_to_volumes(survey, boxes, asking)
     told: dict[bpy.types.Object, list[Outside]] = {}
@@ -886,7 +886,7 @@ def _left_to_volumes(survey: _Survey, boxes: np.ndarray, asking: set[int]) -> tu
         return set(), set()
     unclear = {_medium_of(survey, row.obj) for row in survey.rows if row.medium and row.body is None}
     unclear |= {each for each, facts in survey.facts.items() if not facts.can_be_told or each.library is not None}
-    wanted = _meets(boxes, _beyond_surfaces(survey))
+    wanted = meets(boxes, _beyond_surfaces(survey))
     fillings = []
     for index, (row, material, contact) in enumerate(zip(survey.bodies, materials, survey.contacts)):
         facts = survey.facts[material]
@@ -937,12 +937,12 @@ def _merged(told: dict[bpy.types.Object, list[Outside]]) -> dict[bpy.types.Objec
     }
 
 
-def _meets(boxes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
-    """(n,) whether each of the (n, 2, 3) boxes meets any of the others."""
-    meets = np.zeros(len(boxes), dtype=bool)
+def meets(boxes: np.ndarray, others: Sequence[np.ndarray]) -> np.ndarray:
+    """Return whether each of the (n, 2, 3) boxes meets any of the others, (n,)."""
+    found = np.zeros(len(boxes), dtype=bool)
     for low, high in others:
-        meets |= np.all((boxes[:, 0] <= high) & (boxes[:, 1] >= low), axis=1)
-    return meets
+        found |= np.all((boxes[:, 0] <= high) & (boxes[:, 1] >= low), axis=1)
+    return found
 
 
 def _told(survey: _Survey, contact: Contact, foreign: bool, volumes: set) -> Outside:

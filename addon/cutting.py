@@ -390,17 +390,20 @@ def _drive(
     """Let an input of a modifier be what a material's socket is, without a script."""
     identifier = modifier.node_group.interface.items_tree[name].identifier
     path = f'modifiers["{modifier.name}"].properties.inputs.{identifier}.value'
-    value = dielectric_node(material).inputs[socket].default_value
-    parts = [-1] if isinstance(value, (bool, int, float)) else range(3)
-    for part in parts:
-        driver = holder.driver_add(path, part).driver
+    node = dielectric_node(material)
+    _drive_by(holder, path, material, f'node_tree.nodes["{node.name}"].inputs["{socket}"].default_value')
+
+
+def _drive_by(owner: bpy.types.Object, path: str, source: bpy.types.ID, source_path: str) -> None:
+    """Let a property be what another data-block's is, part by part."""
+    value = source.path_resolve(source_path)
+    for part in [-1] if isinstance(value, (bool, int, float)) else range(len(value)):
+        driver = owner.driver_add(path, part).driver
         driver.type = "SUM"
         target = driver.variables.new().targets[0]
-        target.id_type = "MATERIAL"
-        target.id = material
-        target.data_path = f'node_tree.nodes["{dielectric_node(material).name}"].inputs["{socket}"].default_value'
-        if part >= 0:
-            target.data_path += f"[{part}]"
+        target.id_type = source.id_type
+        target.id = source
+        target.data_path = source_path if part < 0 else f"{source_path}[{part}]"
 
 
 def _set_inputs(modifier: bpy.types.NodesModifier, values: dict) -> None:
@@ -475,15 +478,8 @@ def _plain(value):
 
 def _follow(surface: bpy.types.Object, obj: bpy.types.Object, path: str) -> None:
     """Let a property of the surface be what the medium's is on each frame."""
-    if any(curve.data_path == path for curve in curves(surface.animation_data)):
-        return
-    value = obj.path_resolve(path)
-    for part in [-1] if isinstance(value, (bool, int, float)) else range(len(value)):
-        driver = surface.driver_add(path, part).driver
-        driver.type = "SUM"
-        target = driver.variables.new().targets[0]
-        target.id = obj
-        target.data_path = path if part < 0 else f"{path}[{part}]"
+    if not any(curve.data_path == path for curve in curves(surface.animation_data)):
+        _drive_by(surface, path, obj, path)
 
 
 def _link_lights(surfaces: dict[bpy.types.Object, bpy.types.Object]) -> None:

@@ -77,7 +77,7 @@ VALUES = {
 class Layer:
     """Media of one priority and one material.
 
-    :param crossing: whose surfaces may cross others'; first: the number of the first of them.
+    :param crossing: those whose surfaces may cross others'.
     :param constant: media whose whole surface lies in one layer (its place), in air (None) or inside winners (HIDDEN).
     :param overlapping: media of the layer may overlap each other.
     :param tells_more: its colour or dispersion matters to what lies in it, beside its index.

@@ -242,9 +242,8 @@ def _touching(
     else:
         boxes = np.array([analysis.EVERYWHERE if obj in moving else _box(obj) for obj in objects]).reshape(-1, 2, 3)
         pairs = set()
-        for obj, (low, high) in zip(objects, boxes):
-            meets = np.all((low <= boxes[:, 1]) & (high >= boxes[:, 0]), axis=1)
-            pairs |= {frozenset((obj, objects[other])) for other in np.flatnonzero(meets)}
+        for obj, box in zip(objects, boxes):
+            pairs |= {frozenset((obj, objects[other])) for other in np.flatnonzero(analysis.meets(boxes, [box]))}
     touching: dict[bpy.types.Object, list[bpy.types.Object]] = {obj: [] for obj in objects}
     for pair in pairs:
         if len(pair) == 2:
@@ -378,10 +377,7 @@ def _others_near(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) ->
             others.append(analysis.EVERYWHERE if analysis.may_change(obj) else np.array([place, place]))
         elif obj.type in analysis.SHAPED and obj not in shown | own and not obj.hide_render and not is_cut_surface(obj):
             others.append(analysis.EVERYWHERE)
-    meets = np.zeros(len(boxes), dtype=bool)
-    for low, high in others:
-        meets |= np.all((boxes[:, 0] <= high) & (boxes[:, 1] >= low), axis=1)
-    return {obj for obj, near in zip(objects, meets) if near}
+    return {obj for obj, near in zip(objects, analysis.meets(boxes, others)) if near}
 
 
 def _attributes(scene: bpy.types.Scene, objects: Iterable[bpy.types.Object]) -> dict[bpy.types.Object, tuple[str, ...]]:
