@@ -26,9 +26,8 @@ from .node_group import (
     ensure_lights,
     find_lights,
     make_script,
-    math_node,
-    view_layer_attribute,
 )
+from .shader_nodes import math_node, view_layer_attribute
 from .shader_source import inlined_source
 
 RAYS, LOBE, NOTHING = "RAYS", "LOBE", "NOTHING"

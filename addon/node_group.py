@@ -21,13 +21,13 @@ from .parameters import (
     BASICS,
     BY_KEYWORD,
     GROUP_NAME,
-    LARGEST,
     NEIGHBOUR_PARAMETERS,
     PRIORITY_PROPERTY,
     SOCKETS,
     Parameter,
 )
 from .shader_source import inlined_source
+from .shader_nodes import bounded, math_node, mix_shaders, vector_math, view_layer_attribute
 from .spectral_images import ensure_row, holds, read_rows
 
 SHADER_FILE = "nested_dielectric.osl"
@@ -601,9 +601,8 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     alarm.inputs["Color"].default_value = (1.0, 0.0, 1.0, 1.0)
     links.new(nodes.new("ShaderNodeBsdfRayPortal").outputs[0], script.inputs["CountsPortals"])
     links.new(_disperser(tree, inputs), script.inputs["Disperses"])
-    running = _mix(tree, script.outputs["Running"], alarm.outputs[0], script.outputs["BSDF"])
-    running.label = "Magenta where OSL does not run"
-    links.new(running.outputs[0], outputs.inputs[CYCLES_OUTPUT])
+    running = mix_shaders(tree, script.outputs["Running"], alarm.outputs[0], script.outputs["BSDF"])
+    links.new(running, outputs.inputs[CYCLES_OUTPUT])
 
     links.new(_absorption(tree, coefficients, absorbs, by_volume), outputs.inputs[VOLUME_OUTPUT])
 
@@ -661,14 +660,6 @@ def _spectral_tables(
     image.extension = "EXTEND"
     links.new(coordinate.outputs["Coordinate"], image.inputs["Vector"])
     return image
-
-
-def view_layer_attribute(tree: bpy.types.NodeTree, path: str) -> bpy.types.ShaderNodeAttribute:
-    """A property of the scene that is rendered; a constant to Cycles, which leaves out what it makes needless."""
-    attribute = tree.nodes.new("ShaderNodeAttribute")
-    attribute.attribute_type = "VIEW_LAYER"
-    attribute.attribute_name = path
-    return attribute
 
 
 def _analysed_scene(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
@@ -740,46 +731,6 @@ def compiled(source: str) -> str:
         return bytecode_path.read_text(encoding="utf-8")
 
 
-def math_node(tree: bpy.types.NodeTree, operation: str, *operands: bpy.types.NodeSocket | float) -> bpy.types.NodeSocket:
-    """The result of a Math node on sockets and numbers."""
-    node = tree.nodes.new("ShaderNodeMath")
-    node.operation = operation
-    for socket, operand in zip(node.inputs, operands):
-        if isinstance(operand, float):
-            socket.default_value = operand
-        else:
-            tree.links.new(operand, socket)
-    return node.outputs[0]
-
-
-def _bounded(
-    tree: bpy.types.NodeTree,
-    source: bpy.types.NodeSocket,
-    number: bpy.types.NodeSocket,
-    limits: tuple[float, float, float],
-) -> bpy.types.NodeSocket:
-    """A number within limits, or where `number` is none the default, as osl/bounds.h has it.
-
-    Minimum and Maximum whose first operand is a constant return it for NaN; no other node tells NaN reliably.
-    """
-    math = partial(math_node, tree)
-    low, high, default = limits
-    usable = math("LESS_THAN", math("ABSOLUTE", math("MAXIMUM", -LARGEST, number)), LARGEST)
-    within = math("MINIMUM", high, math("MAXIMUM", low, source))
-    return math("ADD", math("MULTIPLY", within, usable), math("MULTIPLY", default, math("SUBTRACT", 1.0, usable)))
-
-
-def _mix(
-    tree: bpy.types.NodeTree, factor: bpy.types.NodeSocket, first: bpy.types.NodeSocket, second: bpy.types.NodeSocket
-) -> bpy.types.ShaderNodeMixShader:
-    """A Mix Shader that shows the first shader where nothing drives its factor."""
-    mix = tree.nodes.new("ShaderNodeMixShader")
-    mix.inputs[0].default_value = 0.0
-    for source, socket in zip((factor, first, second), mix.inputs):
-        tree.links.new(source, socket)
-    return mix
-
-
 def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
     """A look for EEVEE: clear, with reflections towards the edges, so that what stands in a medium stays in sight.
 
@@ -797,7 +748,7 @@ def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.Node
     gloss = nodes.new("ShaderNodeBsdfAnisotropic")
     gloss.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
     links.new(inputs.outputs["Roughness"], gloss.inputs["Roughness"])
-    return _mix(tree, reflectance, clear.outputs[0], gloss.outputs[0]).outputs[0]
+    return mix_shaders(tree, reflectance, clear.outputs[0], gloss.outputs[0])
 
 
 def _absorption_coefficients(
@@ -810,10 +761,10 @@ def _absorption_coefficients(
     total = math("ADD", math("ADD", separate.outputs[0], separate.outputs[1]), separate.outputs[2])
     low, high, default = BY_KEYWORD["transmittance"].limits
     channels = [
-        _bounded(tree, channel, total, (low, high, own)) for channel, own in zip(separate.outputs, default)
+        bounded(tree, channel, total, (low, high, own)) for channel, own in zip(separate.outputs, default)
     ]
     depth = inputs.outputs["Transmittance Depth"]
-    depth = _bounded(tree, depth, depth, BY_KEYWORD["transmittance_depth"].limits)
+    depth = bounded(tree, depth, depth, BY_KEYWORD["transmittance_depth"].limits)
     coefficients = tree.nodes.new("ShaderNodeCombineXYZ")
     for channel, coefficient in zip(channels, coefficients.inputs):
         decay = math("MULTIPLY", math("LOGARITHM", math("MAXIMUM", channel, 1e-6), e), -1.0)
@@ -927,27 +878,16 @@ def _requests(
         attribute.attribute_name = name
         attribute.attribute_type = kind
         value = attribute.outputs["Color"]
-        sums[condition] = _vector_math(tree, "ADD", sums[condition], value) if condition in sums else value
+        sums[condition] = vector_math(tree, "ADD", sums[condition], value) if condition in sums else value
     total = sums.pop(None)
     for condition, value in sums.items():
-        total = _vector_math(tree, "ADD", total, _vector_math(tree, "MULTIPLY", value, condition))
+        total = vector_math(tree, "ADD", total, vector_math(tree, "MULTIPLY", value, condition))
     return total
 
 
 def socket_path(slot: int, name: str) -> str:
     """The path of a dielectric's socket from the object whose slot it is in."""
     return f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value'
-
-
-def _vector_math(
-    tree: bpy.types.NodeTree, operation: str, first: bpy.types.NodeSocket, second: bpy.types.NodeSocket
-) -> bpy.types.NodeSocket:
-    """The result of a Vector Math node."""
-    node = tree.nodes.new("ShaderNodeVectorMath")
-    node.operation = operation
-    tree.links.new(first, node.inputs[0])
-    tree.links.new(second, node.inputs[1])
-    return node.outputs[0]
 
 
 def _arrange(tree: bpy.types.NodeTree) -> None:
