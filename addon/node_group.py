@@ -16,6 +16,7 @@ from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
 from .contacts import PROBE
 from .dispersion import mean_cauchy_distances
 from .identity import NO_SCENE, SCENE_PROPERTY
+from .native_nodes import NATIVE_GROUP, NativeBody
 from .parameters import (
     BASIC_KEYWORDS,
     BASICS,
@@ -27,7 +28,7 @@ from .parameters import (
     Parameter,
 )
 from .shader_source import inlined_source
-from .shader_nodes import bounded, math_node, mix_shaders, vector_math, view_layer_attribute
+from .shader_nodes import SOCKET_TYPES, bounded, lazily, math_node, mix_shaders, mix_values, vector_math, view_layer_attribute
 from .spectral_images import ensure_row, holds, read_rows
 
 SHADER_FILE = "nested_dielectric.osl"
@@ -96,6 +97,9 @@ CUT_ATTRIBUTES = (
 )
 """Of faces that are cut: what lies outside them, as in osl/cut.h."""
 
+NATIVE_SOCKET = "Native"
+"""Input of the group: Cycles' own nodes render the material, not the shader."""
+
 ANALYSIS_PANEL = "Scene Analysis"
 SCENE_SOCKET = "Analysed Scene"
 OUTSIDE_SOCKET = "Outside"
@@ -137,18 +141,6 @@ DISPERSER_NODE = "Cycles Dispersion"
 
 LEAST_PREVIEW_IOR = 1.2
 """Keeps bubbles, whose index is that of air, in sight in EEVEE."""
-
-_SOCKET_TYPES = {
-    "INT": "NodeSocketInt",
-    "FLOAT": "NodeSocketFloat",
-    "BOOL": "NodeSocketBool",
-    "COLOR": "NodeSocketColor",
-    "VECTOR": "NodeSocketVector",
-    "MENU": "NodeSocketMenu",
-    "INDEX": "NodeSocketInt",
-    "SHADER": "NodeSocketShader",
-}
-
 
 _ANALYSIS_SOCKETS = {
     SCENE_SOCKET: (
@@ -255,6 +247,7 @@ def _is_whole(tree: bpy.types.NodeTree) -> bool:
         TABLES_NODE: "TEX_IMAGE",
         LIGHTS_NAME: "GROUP",
         DISPERSER_NODE: "BSDF_PRINCIPLED",
+        NATIVE_GROUP: "GROUP",
     }
     for name, kind in kinds.items():
         node = tree.nodes.get(name)
@@ -262,7 +255,7 @@ def _is_whole(tree: bpy.types.NodeTree) -> bool:
             return False
         if kind == "SCRIPT" and (node.mode != "INTERNAL" or not node.bytecode_hash):
             return False
-    if tree.nodes[LIGHTS_NAME].node_tree is None:
+    if tree.nodes[LIGHTS_NAME].node_tree is None or tree.nodes[NATIVE_GROUP].node_tree is None:
         return False
     sockets = {
         item.name: item.socket_type
@@ -276,8 +269,8 @@ def _is_whole(tree: bpy.types.NodeTree) -> bool:
 def _input_types() -> dict[str, str]:
     kinds = {parameter.name: parameter.kind for parameter in SOCKETS}
     kinds |= {name: kind for name, (_, kind, *_) in _ANALYSIS_SOCKETS.items()}
-    kinds |= {TABLE_SOCKET: "INT", MEANS_SOCKET: "VECTOR"}
-    return {name: _SOCKET_TYPES[kind] for name, kind in kinds.items()}
+    kinds |= {TABLE_SOCKET: "INT", MEANS_SOCKET: "VECTOR", NATIVE_SOCKET: "BOOL"}
+    return {name: SOCKET_TYPES[kind] for name, kind in kinds.items()}
 
 
 @dataclass(frozen=True)
@@ -305,7 +298,7 @@ def make_script(name: str, source: str) -> Script:
 
 def hide_internals(node: bpy.types.ShaderNodeGroup) -> None:
     """Leave the sockets on a node that are an artist's, not those that the extension sets."""
-    for name in (*_ANALYSIS_SOCKETS, TABLE_SOCKET, MEANS_SOCKET):
+    for name in (*_ANALYSIS_SOCKETS, TABLE_SOCKET, MEANS_SOCKET, NATIVE_SOCKET):
         node.inputs[name].hide = True
 
 
@@ -355,7 +348,7 @@ def _lists_lamps(tree: bpy.types.NodeTree) -> bool:
     return (
         tree.bl_idname == "ShaderNodeTree"
         and all(
-            getattr(tree.interface.items_tree.get(name), "socket_type", "") == _SOCKET_TYPES[kind]
+            getattr(tree.interface.items_tree.get(name), "socket_type", "") == SOCKET_TYPES[kind]
             for name, kind in _LIGHTS_OUTPUTS.items()
         )
     )
@@ -369,7 +362,7 @@ def ensure_lights() -> bpy.types.NodeTree:
         tree[LIGHTS_VERSION_PROPERTY] = MATERIAL_VERSION
         tree.description = "Lights that direct refraction and direct reflection carry; made by Prepare"
         for name, kind in _LIGHTS_OUTPUTS.items():
-            tree.interface.new_socket(name, in_out="OUTPUT", socket_type=_SOCKET_TYPES[kind])
+            tree.interface.new_socket(name, in_out="OUTPUT", socket_type=SOCKET_TYPES[kind])
         tree.nodes.new("NodeGroupOutput")
     return tree
 
@@ -431,7 +424,7 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
         socket = interface.new_socket(
             parameter.name,
             in_out="INPUT",
-            socket_type=_SOCKET_TYPES[parameter.kind],
+            socket_type=SOCKET_TYPES[parameter.kind],
             parent=panels[parameter.panel],
             description=parameter.description,
         )
@@ -454,6 +447,7 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
     )
     table.hide_value = means.hide_value = True
     _add_fact_sockets(interface)
+    _add_native_socket(interface)
     _put_basics_first(interface, panels[BASICS])
 
 
@@ -471,7 +465,7 @@ def _add_fact_sockets(interface: bpy.types.NodeTreeInterface) -> None:
     )
     for name, (kind, description) in FACT_OUTPUTS.items():
         interface.new_socket(
-            name, in_out="OUTPUT", socket_type=_SOCKET_TYPES[kind], parent=panel, description=description
+            name, in_out="OUTPUT", socket_type=SOCKET_TYPES[kind], parent=panel, description=description
         )
     mask = interface.new_socket(
         MASK_OUTPUT,
@@ -491,10 +485,22 @@ def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:
     )
     for name, (_, kind, default, description) in _ANALYSIS_SOCKETS.items():
         socket = interface.new_socket(
-            name, in_out="INPUT", socket_type=_SOCKET_TYPES[kind], parent=panel, description=description
+            name, in_out="INPUT", socket_type=SOCKET_TYPES[kind], parent=panel, description=description
         )
         socket.default_value = default
         socket.hide_value = True
+
+
+def _add_native_socket(interface: bpy.types.NodeTreeInterface) -> None:
+    """Made after all others, as their numbers are what keyframes know them by."""
+    socket = interface.new_socket(
+        NATIVE_SOCKET,
+        in_out="INPUT",
+        socket_type="NodeSocketBool",
+        parent=interface.items_tree[ANALYSIS_PANEL],
+        description="Cycles' own nodes render the material on any device, Open Shading Language does not; kept by the extension",
+    )
+    socket.hide_value = True
 
 
 def _set_limits(socket: bpy.types.NodeTreeInterfaceSocket, parameter: Parameter) -> None:
@@ -557,10 +563,11 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
         | {name.replace(" ", ""): kind for name, (kind, _) in FACT_OUTPUTS.items()},
     )
 
+    menus = {}
     for parameter in SOCKETS:
         source = inputs.outputs[parameter.name]
         if parameter.kind == "MENU":
-            source = _menu(tree, source, parameter)
+            source = menus[parameter.name] = _menu(tree, source, parameter)
         links.new(source, script.inputs[parameter.osl_name])
     for osl_name, (name, _) in told.items():
         links.new(inputs.outputs[name], script.inputs[osl_name])
@@ -597,23 +604,42 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     for name in (EMITTER_OUTPUT, LAMPS_OUTPUT):
         links.new(lights.outputs[name], script.inputs[name])
 
-    alarm = nodes.new("ShaderNodeBsdfDiffuse")
-    alarm.inputs["Color"].default_value = (1.0, 0.0, 1.0, 1.0)
     links.new(nodes.new("ShaderNodeBsdfRayPortal").outputs[0], script.inputs["CountsPortals"])
     links.new(_disperser(tree, inputs), script.inputs["Disperses"])
-    running = mix_shaders(tree, script.outputs["Running"], alarm.outputs[0], script.outputs["BSDF"])
-    links.new(running, outputs.inputs[CYCLES_OUTPUT])
+    native = _native_body(
+        tree,
+        {name: inputs.outputs[name] for name in inputs.outputs.keys() if name}
+        | menus
+        | {"Scene": scene, "Holds": analysis_holds, "By Volume": by_volume, "Cut": cut},
+    )
+    chosen = inputs.outputs[NATIVE_SOCKET]
+    by_shader = mix_shaders(tree, script.outputs["Running"], native["Surface"], script.outputs["BSDF"])
+    links.new(lazily(tree, "SHADER", chosen, by_shader, native["Surface"]), outputs.inputs[CYCLES_OUTPUT])
 
-    links.new(_absorption(tree, coefficients, absorbs, by_volume), outputs.inputs[VOLUME_OUTPUT])
+    of_shadows = lazily(tree, "FLOAT", chosen, 0.0, native["Shadow by Volume"])
+    links.new(_absorption(tree, coefficients, absorbs, by_volume, of_shadows), outputs.inputs[VOLUME_OUTPUT])
 
     mask = add_script(tree, "Volume Mask", scripts[MASK_FILE], {"Priority": "INT"}, {"Mask": "FLOAT"})
     links.new(inputs.outputs["Priority"], mask.inputs["Priority"])
     links.new(mask.outputs["Mask"], outputs.inputs[MASK_OUTPUT])
 
     links.new(_preview(tree, inputs), outputs.inputs[PREVIEW_OUTPUT])
-    for name in FACT_OUTPUTS:
-        links.new(script.outputs[name.replace(" ", "")], outputs.inputs[name])
+    for name, (kind, _) in FACT_OUTPUTS.items():
+        kind = "RGBA" if kind == "COLOR" else kind
+        by_shader = mix_values(tree, kind, script.outputs["Running"], native[name], script.outputs[name.replace(" ", "")])
+        links.new(lazily(tree, kind, chosen, by_shader, native[name]), outputs.inputs[name])
     _arrange(tree)
+
+
+def _native_body(tree: bpy.types.NodeTree, known: dict[str, bpy.types.NodeSocket]) -> bpy.types.NodeOutputs:
+    """The outputs of the native body, which finds what it asks for by name."""
+    body = NativeBody()
+    node = tree.nodes.new("ShaderNodeGroup")
+    node.node_tree = body.tree
+    node.name = node.label = NATIVE_GROUP
+    for name in body.asked:
+        tree.links.new(known[name], node.inputs[name])
+    return node.outputs
 
 
 def add_script(
@@ -713,7 +739,7 @@ def arm_dispersion(tree: bpy.types.NodeTree) -> None:
 
 def _ensure_socket(sockets: bpy.types.NodeInputs, kind: str, name: str) -> None:
     if name not in sockets:
-        sockets.new(type=_SOCKET_TYPES[kind], name=name, identifier=name)
+        sockets.new(type=SOCKET_TYPES[kind], name=name, identifier=name)
 
 
 def compiled(source: str) -> str:
@@ -779,11 +805,13 @@ def _absorption(
     coefficients: bpy.types.NodeSocket,
     absorbs: bpy.types.NodeSocket,
     by_volume: bpy.types.NodeSocket,
+    of_shadows: bpy.types.NodeSocket,
 ) -> bpy.types.NodeSocket:
     """Absorption by Cycles' own volume: of all rays where the analysis says so (see :mod:`charging`); elsewhere of those that
-    start at the camera or at a foreign object, whose way may meet no surface of a medium.
+    start at the camera or at a foreign object, whose way may meet no surface of a medium, and of shadow rays where the native
+    body cannot.
 
-    All other rays are charged by the shader, which knows who wins. Where nothing is absorbed the mix is folded away and
+    All other rays are charged by the surface, which knows who wins. Where nothing is absorbed the mix is folded away and
     Cycles sees no volume.
     """
     math = partial(math_node, tree)
@@ -794,6 +822,8 @@ def _absorption(
     links.new(coefficients, charged.inputs[0])
     # Folds to 1, and no light path is asked, where the volume absorbs for all rays.
     straight = math_node(tree, "ADD", path.outputs["Is Camera Ray"], path.outputs["Is Diffuse Ray"])
+    shadow = math_node(tree, "MULTIPLY", path.outputs["Is Shadow Ray"], of_shadows)
+    straight = math_node(tree, "MAXIMUM", straight, shadow)
     elsewhere = math_node(tree, "MULTIPLY", straight, math_node(tree, "SUBTRACT", 1.0, by_volume))
     links.new(math_node(tree, "ADD", elsewhere, by_volume), charged.inputs["Scale"])
     volume = nodes.new("ShaderNodeVolumeCoefficients")
@@ -916,7 +946,7 @@ def _arrange(tree: bpy.types.NodeTree) -> None:
     }
     heights: dict[int, float] = {}
     for node in tree.nodes:
-        column = columns[node.bl_idname]
+        column = columns.get(node.bl_idname, 2)
         node.location = (column * 260.0, heights.get(column, 0.0))
         heights[column] = node.location.y - (60.0 if column < 0 else 380.0)
         node.hide = column < 0

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from math import e
 
 import bpy
 
@@ -124,9 +125,9 @@ class Number:
     tree: bpy.types.NodeTree
     socket: Socket
 
-    def math(self, operation: str, *others: Number | float) -> Number:
-        """The result of a Math node of which this is the first operand."""
-        return self._of(operation, self, *others)
+    def math(self, operation: str, *others: Number | float, first: bool = False) -> Number:
+        """The result of a Math node of which this is the first operand; or with `first`, the last."""
+        return self._of(operation, *others, self) if first else self._of(operation, self, *others)
 
     def _of(self, operation: str, *operands: Number | float) -> Number:
         sockets = (each.socket if isinstance(each, Number) else float(each) for each in operands)
@@ -168,3 +169,128 @@ class Number:
     def equals(self, other: Number | float) -> Number:
         """1 for the same whole number, else 0."""
         return self.math("COMPARE", other, 0.5)
+
+
+SOCKET_TYPES = {
+    "INT": "NodeSocketInt",
+    "FLOAT": "NodeSocketFloat",
+    "BOOL": "NodeSocketBool",
+    "COLOR": "NodeSocketColor",
+    "RGBA": "NodeSocketColor",
+    "VECTOR": "NodeSocketVector",
+    "MENU": "NodeSocketMenu",
+    "INDEX": "NodeSocketInt",
+    "SHADER": "NodeSocketShader",
+}
+"""By the kinds of parameters and of nodes."""
+
+
+class Part:
+    """A group of nodes within another one, whose inputs are made where they are first asked for.
+
+    Small trees are built far faster than large ones: Blender looks at all of a tree after each link.
+    """
+
+    def __init__(self, name: str, kinds: Mapping[str, str]) -> None:
+        """Begin a group; :param kinds: kinds of all that it may ask for, by name. Its leading dot hides it from menus."""
+        self.tree = bpy.data.node_groups.new(f".{name}", "ShaderNodeTree")
+        self.kinds = kinds
+        self.start = self.tree.nodes.new("NodeGroupInput")
+        self.end = self.tree.nodes.new("NodeGroupOutput")
+        self.known: dict[str, Socket] = {}
+        self.asked: list[str] = []
+        self.vector = partial(vector_math, self.tree)
+        self.node = self.tree.nodes.new
+
+    def socket(self, name: str) -> Socket:
+        """What a name stands for in this group: one of its inputs, or what was defined here."""
+        if name not in self.known:
+            self.tree.interface.new_socket(name, in_out="INPUT", socket_type=SOCKET_TYPES[self.kinds[name]])
+            self.asked.append(name)
+            self.known[name] = self.start.outputs[name]
+        return self.known[name]
+
+    def raw(self, name: str) -> Number:
+        """A number of that name as it is."""
+        return Number(self.tree, self.socket(name))
+
+    def define(self, name: str, value: Number | Socket) -> None:
+        """Give a name a meaning, for this group and those within it."""
+        self.known[name] = value.socket if isinstance(value, Number) else value
+
+    def give(self, name: str, kind: str, value: Number | Socket) -> None:
+        """Make an output."""
+        self.tree.interface.new_socket(name, in_out="OUTPUT", socket_type=SOCKET_TYPES[kind])
+        self.tree.links.new(value.socket if isinstance(value, Number) else value, self.end.inputs[name])
+
+    def call(self, part: Part, **given: Number | Socket | float) -> dict[str, Socket]:
+        """Use another group within this one; what is not given means here what it means there. Returns its outputs."""
+        node = self.node("ShaderNodeGroup")
+        node.node_tree = part.tree
+        for name in part.asked:
+            value = given[name] if name in given else self.socket(name)
+            plug(self.tree, value.socket if isinstance(value, Number) else value, node.inputs[name])
+        return dict(zip((socket.name for socket in node.outputs), node.outputs))
+
+    def number_of(self, node: str, output: str | int = 0) -> Number:
+        """An output of a new node without inputs."""
+        return Number(self.tree, self.node(node).outputs[output])
+
+    def mix(self, factor: Number, first: Socket | None, second: Socket | None) -> Socket:
+        """One of two shaders, or both."""
+        return mix_shaders(self.tree, factor.socket, first, second)
+
+    def add(self, first: Socket | None, second: Socket | None) -> Socket:
+        """The sum of two shaders."""
+        node = self.node("ShaderNodeAddShader")
+        for source, socket in zip((first, second), node.inputs):
+            if source is not None:
+                self.tree.links.new(source, socket)
+        return node.outputs[0]
+
+    def choose(self, condition: Number, otherwise: Number | float, chosen: Number | float) -> Number:
+        """One of two numbers, as a condition has it that may differ from hit to hit."""
+        values = (each.socket if isinstance(each, Number) else each for each in (otherwise, chosen))
+        return Number(self.tree, mix_values(self.tree, "FLOAT", condition.socket, *values))
+
+    def choose_vector(self, condition: Number, otherwise: Socket, chosen: Socket) -> Socket:
+        """One of two vectors."""
+        return mix_values(self.tree, "VECTOR", condition.socket, otherwise, chosen)
+
+    def surely(self, condition: Number) -> Number:
+        """1 where a condition holds and follows from unlinked sockets."""
+        return Number(self.tree, lazily(self.tree, "INT", condition.socket, 0, 1))
+
+    def where(self, condition: Number, otherwise: Number | float, chosen: Number | float) -> Number:
+        """One of two numbers, of which the other is left out; see :func:`lazily`."""
+        values = (each.socket if isinstance(each, Number) else each for each in (otherwise, chosen))
+        return Number(self.tree, lazily(self.tree, "FLOAT", condition.socket, *values))
+
+    def split(self, value: Socket, names: Sequence[str] = ("x", "y", "z"), node: str = "XYZ") -> dict[str, Number]:
+        """The components of a vector, or of a colour."""
+        separate = self.node(f"ShaderNodeSeparate{node}")
+        self.tree.links.new(value, separate.inputs[0])
+        return {name: Number(self.tree, socket) for name, socket in zip(names, separate.outputs)}
+
+    def join(self, components: Sequence[Number | float]) -> Socket:
+        """A vector of three numbers."""
+        combine = self.node("ShaderNodeCombineXYZ")
+        for component, socket in zip(components, combine.inputs):
+            plug(self.tree, component.socket if isinstance(component, Number) else component, socket)
+        return combine.outputs[0]
+
+    def dot(self, first: Socket, second: Socket) -> Number:
+        """The dot product of two vectors."""
+        return Number(self.tree, self.vector("DOT_PRODUCT", first, second))
+
+    def length(self, vector: Socket) -> Number:
+        """The length of a vector."""
+        return Number(self.tree, self.vector("LENGTH", vector))
+
+    def scaled(self, vector: Socket, factor: Number | float) -> Socket:
+        """A vector times a number."""
+        return self.vector("SCALE", vector, factor.socket if isinstance(factor, Number) else factor)
+
+    def exponential(self, exponents: Socket) -> Socket:
+        """e to the power of each component."""
+        return self.vector("POWER", (e, e, e), exponents)
