@@ -313,13 +313,14 @@ class _Leftovers:
 
     def remove(self) -> None:
         """Remove what nothing uses any more; a text's own users are the Script nodes that are left."""
-        lists_last = sorted(self.groups, key=lambda tree: group_version(tree) is None)
-        _remove_unused(lists_last, bpy.data.node_groups.remove)
+        left = self.groups
+        while unused := {tree for tree in left if _is_unused(tree)}:
+            left = left - unused
+            _remove_unused(unused, bpy.data.node_groups.remove)
         _remove_unused(self.images, bpy.data.images.remove)
         _remove_unused(self.texts, bpy.data.texts.remove)
         tree = find_group()
-        lists = [data for data in _held_by(tree) if isinstance(data, bpy.types.NodeTree)]
-        for data in (tree, *_held_by(tree), *(data for held in lists for data in _held_by(held))):
+        for data in (tree, *dict.fromkeys(_held_within(tree))):
             _take_plain_name(data)
 
 
@@ -334,9 +335,21 @@ def _held_by(tree: bpy.types.NodeTree) -> Iterator[bpy.types.ID]:
             yield node.node_tree
 
 
+def _held_within(tree: bpy.types.NodeTree) -> Iterator[bpy.types.ID]:
+    """The same, in groups within the group, too."""
+    for data in _held_by(tree):
+        yield data
+        if isinstance(data, bpy.types.NodeTree):
+            yield from _held_within(data)
+
+
+def _is_unused(data: bpy.types.ID) -> bool:
+    return data.users - data.use_fake_user == 0
+
+
 def _remove_unused(found: Iterable[bpy.types.ID], remove: Callable[[bpy.types.ID], None]) -> None:
     for data in found:
-        if data.users - data.use_fake_user == 0:
+        if _is_unused(data):
             remove(data)
 
 

@@ -42,13 +42,20 @@ def inputs(name: str) -> bpy.types.NodeInputs:
 
 
 def own_data() -> dict[str, list[str]]:
-    """What the extension keeps in a file, by kind."""
+    """What the extension keeps in a file, by kind; parts of groups have a leading dot, and count once they are not one of each."""
+    trees = [tree for tree in bpy.data.node_groups if tree.name not in PARTS]
     return {
-        "groups": sorted(tree.name for tree in bpy.data.node_groups),
+        "groups": sorted(tree.name for tree in trees),
         "texts": sorted(text.name for text in bpy.data.texts),
         "images": sorted(image.name for image in bpy.data.images),
     }
 
+
+PARTS = {
+    f".Nested Dielectric Native {part}".rstrip()
+    for part in ("", "Coefficients", "Surroundings", "Light", "Weights", "Tangents", "Stretched", "Glass", "Special", "Spread",
+                 "Dispersing")
+}
 
 ONE_OF_EACH = {
     "groups": ["Nested Dielectric", "Nested Dielectric Lights"],
