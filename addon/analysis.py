@@ -28,6 +28,7 @@ from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
 from .materials import absorption_coefficients, dielectric_node, has_own_volume, unchanged_nodes
 from .media import SOLID_TYPES, is_cut_surface, is_rendered, material_priority, media, own_priority
+from .native_nodes import CENTRE
 from .node_group import (
     AIR_AROUND,
     ANALYSED,
@@ -199,6 +200,7 @@ def clear_analysis(scene: bpy.types.Scene) -> None:
     What another analysed scene shares with it asks there too until that one is analysed again.
     """
     scene.pop(ANALYSED, None)
+    scene.pop(CENTRE, None)
     _of(scene).survey = None
     number = known_number(scene)
     for material in bpy.data.materials:
@@ -335,6 +337,7 @@ def _look(survey: _Survey) -> Found:
     survey = replace(survey, contacts=contacts.analyse([row.body for row in survey.bodies], known.memory))
     told = _outsides(survey)
     _tell(survey, told)
+    _tell_centre(survey)
     known.survey, known.found = survey, _found(survey, told)
     _forget_unused()
     _set_validity(survey.scene, _Validity(1.0, _frame(survey.scene), _validity(survey.scene).every_frame))
@@ -984,6 +987,18 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, Outside]) -> None:
         _tell_material(material, common or by_object, number, slots.get(material))
         for obj in objects:
             _tell_object(obj, None if common else told[obj])
+
+
+def _tell_centre(survey: _Survey) -> None:
+    """Write a point amid the media; it stays as long as it is among them."""
+    if not survey.bodies:
+        return
+    boxes = np.array([row.box for row in survey.bodies])
+    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+    before = np.array(survey.scene.get(CENTRE, (np.inf,) * 3), dtype=float)
+    if before.shape != (3,) or not np.all((before >= low) & (before <= high)):
+        survey.scene[CENTRE] = tuple(map(float, (low + high) / 2.0))
+        survey.scene.update_tag()
 
 
 def _common(outsides: Iterable[Outside]) -> Outside | None:

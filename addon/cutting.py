@@ -33,10 +33,11 @@ from .cutting_nodes import (
     value_name,
     values_of,
 )
-from .cutting_plan import Cut, make_plan
+from .cutting_plan import Cut, is_in_use, make_plan
 from .foreign import RAY_KINDS
 from .materials import dielectric_node
 from .media import CUT_OF, HIDDEN_BY_CUT
+from .native_nodes import TELLS_COLOUR, TELLS_DISPERSION
 from .node_group import CUT
 from .shapes import content_of
 
@@ -293,8 +294,8 @@ def _show(scene: bpy.types.Scene, plan: Plan) -> None:
     if not plan.layers:
         _clear(scene)
         return
-    if scene.get(CUT) != 1.0:
-        scene[CUT] = 1.0
+    if scene.get(CUT) != _tells(plan):
+        scene[CUT] = _tells(plan)
         scene.update_tag()
     numbers = plan.numbers()
     collection = _ensure_collection(scene)
@@ -326,6 +327,14 @@ def _show(scene: bpy.types.Scene, plan: Plan) -> None:
         if not obj.hide_render:
             obj.hide_render = True
     _link_lights(surfaces)
+
+
+def _tells(plan: Plan) -> float:
+    """What the faces of a plan's surfaces tell at most of the media outside: their index, colour, or dispersion."""
+    nodes = [dielectric_node(plan.layers[place].material) for place in told_layers(plan) if plan.layers[place].tells_more]
+    if any(is_in_use(node, "Disperse") for node in nodes):
+        return TELLS_DISPERSION
+    return TELLS_COLOUR if nodes else 1.0
 
 
 def _ensure_holders(collection: bpy.types.Collection, media: int) -> list[bpy.types.Object]:

@@ -331,13 +331,21 @@ def _around(obj: bpy.types.Object, known: dict, place: dict[bpy.types.Object, in
 
 def _tells_more(material: bpy.types.Material) -> bool:
     """Whether faces in a medium have to carry more than its index."""
-    inputs = dielectric_node(material).inputs
+    node = dielectric_node(material)
+    model = node.inputs["Dispersion Model"]
     return (
         _may_absorb(material)
-        or bool(inputs["Disperse"].default_value)
-        or inputs["Dispersion Model"].default_value == 2
-        or any(inputs[name].is_linked or is_animated(material.node_tree, inputs[name]) for name in ("Disperse", "Dispersion Model"))
+        or is_in_use(node, "Disperse")
+        or model.default_value == 2
+        or model.is_linked
+        or is_animated(material.node_tree, model)
     )
+
+
+def is_in_use(node: bpy.types.ShaderNodeGroup, name: str) -> bool:
+    """Tell whether a switch of a medium is on, or may be on some frame or hit."""
+    socket = node.inputs[name]
+    return bool(socket.default_value) or socket.is_linked or is_animated(node.id_data, socket)
 
 
 def _may_absorb(material: bpy.types.Material) -> bool:

@@ -233,7 +233,7 @@ class _Surroundings(_Part):
         told = self.choose(self.face_tells, 1.0 - self.in_medium, self.face.math("COMPARE", 1.0, 1e-7))
         air = self.where(beside, 1.0, told)
         by_analysis = self.choose(self.in_medium, 1.0, self.told("ior").math("MAXIMUM", 0.01))
-        ior = self.choose(self.face_tells, by_analysis, abs(self.face).math("MINIMUM", 100.0))
+        ior = self.choose(self.face_tells, by_analysis, abs(self.face).math("MINIMUM", 100.0) + self.face_offset)
         known = (self.outside > AIR - 0.5) * (self.outside < NEVER + 0.5)
         exists = self.choose(self.face_tells, 1.0 - self.outside.equals(NEVER), self.face < 0.5 * CUT_HIDDEN)
         self.give("Known", "FLOAT", self.face_tells.math("MAXIMUM", known))
@@ -285,6 +285,13 @@ class _Surroundings(_Part):
     @cached_property
     def face_tells(self) -> Number:
         return abs(self.face) > 0.0
+
+    @cached_property
+    def face_offset(self) -> Number:
+        """White light's index above that which was typed, in a medium of JF's that disperses."""
+        curve = self.split(attribute(self.tree, "GEOMETRY", "nd_cut_curve").outputs["Vector"], ("model", "Abbe", "spread"))
+        disperses = (self.face < 0.0) * (self.raw("Cut") > TELLS_DISPERSION - 0.5) * curve["model"].equals(CUT_SPLITS + 2.0)
+        return curve["spread"] * jf_ior(0.0, 1.0, LINE_D) * disperses
 
     @cached_property
     def outer_coefficients(self) -> Socket:
