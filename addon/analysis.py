@@ -28,7 +28,7 @@ from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
 from .materials import absorption_coefficients, dielectric_node, has_own_volume, unchanged_nodes
 from .media import SOLID_TYPES, is_cut_surface, is_rendered, material_priority, media, own_priority
-from .native_nodes import CENTRE
+from .native_nodes import CENTRE, LARGEST_EXPONENT
 from .node_group import (
     AIR_AROUND,
     ANALYSED,
@@ -990,13 +990,20 @@ def _tell(survey: _Survey, told: dict[bpy.types.Object, Outside]) -> None:
 
 
 def _tell_centre(survey: _Survey) -> None:
-    """Write a point amid the media; it stays as long as it is among them."""
-    if not survey.bodies:
-        return
-    boxes = np.array([row.box for row in survey.bodies])
-    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
+    """Write a point amid the media, from which shadow rays may measure their way; it stays as long as it is among them. None
+    where colours may differ from place to place, or are too deep for single precision.
+    """
+    nodes = [dielectric_node(material) for material in survey.facts]
+    varies = any(facts.coefficients is None for facts in survey.facts.values())
+    black = any(min(node.inputs["Transmittance"].default_value[:3]) <= 1e-6 for node in nodes)
+    deepest = max((max(absorption_coefficients(node)) for node in nodes), default=0.0)
+    boxes = np.array([row.box for row in survey.bodies]).reshape(-1, 2, 3)
+    low, high = boxes[:, 0].min(axis=0, initial=np.inf), boxes[:, 1].max(axis=0, initial=-np.inf)
     before = np.array(survey.scene.get(CENTRE, (np.inf,) * 3), dtype=float)
-    if before.shape != (3,) or not np.all((before >= low) & (before <= high)):
+    if varies or black or not len(boxes) or deepest * np.linalg.norm(high - low) > LARGEST_EXPONENT:
+        if survey.scene.pop(CENTRE, None) is not None:
+            survey.scene.update_tag()
+    elif before.shape != (3,) or not np.all((before >= low) & (before <= high)):
         survey.scene[CENTRE] = tuple(map(float, (low + high) / 2.0))
         survey.scene.update_tag()
 

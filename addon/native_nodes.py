@@ -22,7 +22,9 @@ from .shader_nodes import Number, Part, Socket, attribute, lazily, mix_values, p
 NATIVE_GROUP = "Nested Dielectric Native"
 
 CENTRE = "nd_centre"
-"""Custom property of a scene: the middle of its media, from which shadow rays measure how far they go through them."""
+"""Custom property of a scene: a point amid its media, from which shadow rays measure how far they go through them. Where there
+is none volumes absorb of them.
+"""
 
 CUT_HIDDEN = 1e6
 CUT_SPLITS = 3.0
@@ -345,7 +347,12 @@ class _Light(_Part):
     def surfaces_absorb_shadows(self) -> Number:
         """Nothing foreign stands in the media: then surfaces take from shadow rays what media absorb."""
         by_object = self.raw("Outside").equals(5)
-        return self.raw("Holds") * (1.0 - self.raw("Foreign Objects")) * (1.0 - by_object)
+        told = self.raw("Holds") * (1.0 - self.raw("Foreign Objects")) * (1.0 - by_object)
+        return told * (Number(self.tree, self.centre.outputs["Alpha"]) > 0.5)
+
+    @cached_property
+    def centre(self) -> bpy.types.ShaderNodeAttribute:
+        return view_layer_attribute(self.tree, f'["{CENTRE}"]')
 
     @cached_property
     def shadow_left(self) -> Socket:
@@ -355,8 +362,8 @@ class _Light(_Part):
         But that is the difference of two distances along the ray, from a plane that all surfaces have in common: one charges
         the way to where the ray comes out, the other gives back the way to where it went in.
         """
-        centre = view_layer_attribute(self.tree, f'["{CENTRE}"]').outputs["Color"]
-        way = self.dot(self.vector("SUBTRACT", self.geometry["Position"], centre), self.geometry["Incoming"])
+        offset = self.vector("SUBTRACT", self.geometry["Position"], self.centre.outputs["Color"])
+        way = self.dot(offset, self.geometry["Incoming"])
         inner_less_outer = self.vector("SUBTRACT", self.socket("Own Coefficients"), self.socket("Outer Coefficients"))
         side = (2.0 * self.backfacing - 1.0) * way * self.surfaces_absorb_shadows
         exponents = self.vector("MINIMUM", self.scaled(inner_less_outer, side), (LARGEST_EXPONENT,) * 3)
@@ -669,7 +676,8 @@ class NativeBody(_Part):
         has_own = Number(self.tree, own.outputs["Alpha"]) > 0.5
         self.give("Priority Inside", "FLOAT", self.choose(has_own, self.raw("Priority"), Number(self.tree, own.outputs["Fac"])))
         self.give("Priority Outside", "FLOAT", outside["Priority Outside"])
-        self.give("Arriving Light", "COLOR", light["Arrives"])
+        white = self.join((1.0, 1.0, 1.0))
+        self.give("Arriving Light", "COLOR", self.choose_vector(exists, white, light["Arrives"]))
 
     def _define_own(self, coefficients: _Coefficients) -> None:
         """What follows from the material's own numbers and from what lies outside."""

@@ -162,7 +162,9 @@ def test_both_bodies_are_bumped_alike():
 
 @pytest.mark.parametrize("place", mostly_again(["Emission at Interfaces", "Emission at Entrances", "Emission at Exits"]))
 def test_both_bodies_shine_where_they_are_asked_to(place):
-    add_emission_port(ball(), place, 0.3)
+    material = ball()
+    add_emission_port(material, place, 0.3)
+    material.cycles.emission_sampling = "NONE"  # or Cycles takes one of them for a lamp that shines straight through the ball
     nd.analyse(bpy.context.scene)
     assert_equal(*by_both())
 
@@ -174,6 +176,7 @@ FACTS = ("Surface Exists", "Is Entrance", "Is Exit", "Priority Inside", "Priorit
 def test_both_bodies_know_the_same_of_a_surface(fact):
     pool(RED)
     for name in ("Glass", "Water", "Ice"):
+        bpy.data.materials[name].cycles.emission_sampling = "NONE"
         tree = bpy.data.materials[name].node_tree
         node = dielectric_node(bpy.data.materials[name])
         shine, add = (tree.nodes.new(f"ShaderNode{kind}") for kind in ("Emission", "AddShader"))
@@ -217,16 +220,17 @@ def test_both_bodies_of_dispersing_media_that_are_cut_show_the_same_picture(keyw
     assert_same_picture(*found, mean=2e-3, size=8)
 
 
-def test_a_value_that_is_linked_counts_in_the_native_body():
+@pytest.mark.parametrize("name", ["Internal Reflections", "Roughness", "Refraction Scale"])
+def test_a_value_that_is_linked_counts_in_the_native_body(name):
     """What is left out is decided by unlinked sockets alone: a texture may be anything."""
-    material = ball(specular_scale=1.0)
+    material = ball()
     tree = material.node_tree
     checker = tree.nodes.new("ShaderNodeTexChecker")
-    checker.inputs["Color1"].default_value, checker.inputs["Color2"].default_value = (1, 1, 1, 1), (0, 0, 0, 1)
-    tree.links.new(checker.outputs["Fac"], dielectric_node(material).inputs["Internal Reflections"])
-    tree.links.new(checker.outputs["Color"], dielectric_node(material).inputs["Transmittance"])
+    tree.links.new(checker.outputs["Fac"], dielectric_node(material).inputs[name])
     nd.analyse(bpy.context.scene)
-    assert_equal(*by_both())
+    shader, nodes = by_both(256)
+    assert np.abs(nodes.mean(axis=(0, 1)) / shader.mean(axis=(0, 1)) - 1.0).max() < 2e-3
+    assert np.abs(nodes - shader).mean() < 5e-3
 
 
 def test_a_slab_absorbs_as_beer_says():
