@@ -1072,6 +1072,12 @@ def _facts_in_one(outside: Outside) -> float:
     )
 
 
+def told_foreign(obj: bpy.types.Object) -> bool:
+    """Tell whether an object's own properties leave it open that something that is no medium stands in it."""
+    values = _four(obj.get(OBJECT_PROPERTIES[0]))
+    return values is None or not int(values[0]) & 16
+
+
 def _forget_faces(obj: bpy.types.Object) -> None:
     """Take away what older versions told the faces of a mesh."""
     mesh = obj.data

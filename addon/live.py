@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 import bpy
 
-from . import analysis, cutting
+from . import analysis, backends, cutting
 from .identity import NO_SCENE, known_number
 from .lights import update_lights
 from .trees import mend_nodes
@@ -80,6 +80,7 @@ def update_cut(scene: bpy.types.Scene) -> cutting.Cut:
     then on, as by :func:`analyse`.
     """
     if not cutting.is_cut(scene):
+        cutting.end_cut(scene)
         return cutting.Cut()
     install()
     return cutting.cut_surfaces(scene, scripted=any(frame_scripts()))
@@ -92,7 +93,7 @@ def keep_cut(scene: bpy.types.Scene) -> str:
 
 
 def _cut_scenes() -> list[bpy.types.Scene]:
-    return [scene for scene in bpy.data.scenes if cutting.is_cut(scene) and scene.library is None]
+    return [scene for scene in bpy.data.scenes if scene.library is None and (cutting.is_cut(scene) or cutting.is_shown(scene))]
 
 
 def _trust(scene: bpy.types.Scene) -> None:
@@ -126,6 +127,7 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
         mend_nodes_of(bpy.data.materials)
         _analyse(scene)
     update_cut(scene)
+    backends.choose(scene)
 
 
 @bpy.app.handlers.persistent
@@ -154,6 +156,7 @@ def analyse_after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
         _wait_for_rest()
         return
     _analyse(scene)
+    backends.choose(scene)
 
 
 @bpy.app.handlers.persistent
@@ -193,6 +196,8 @@ def analyse_at_rest() -> float | None:
         _analyse(scene)
     for scene in _cut_scenes():
         update_cut(scene)
+    for scene in {*_analysed_scenes(), *_cut_scenes()}:
+        backends.choose(scene)
     return None
 
 
@@ -243,6 +248,8 @@ def narrow_before_save(*_: object) -> None:
         analysis.trust(scene, every_frame=False)
     for scene in _cut_scenes():
         update_cut(scene)
+    for scene in {*_analysed_scenes(), *_cut_scenes()}:
+        backends.choose(scene)
 
 
 @bpy.app.handlers.persistent

@@ -107,6 +107,7 @@ GIVES_BACK_SOCKET = "Gives Back"
 SURROUNDINGS_SOCKET = "Surroundings"
 SURROUNDINGS_COLOR_SOCKET = "Surroundings Transmittance"
 SLOTS_SOCKET = "Material Slots"
+NATIVE_SOCKET = "Native"
 AIR_AROUND = (0.0, 1.0, 0.0)
 """Priority, IOR and Transmittance Depth of surroundings that are told to nobody."""
 
@@ -305,7 +306,7 @@ def make_script(name: str, source: str) -> Script:
 
 def hide_internals(node: bpy.types.ShaderNodeGroup) -> None:
     """Leave the sockets on a node that are an artist's, not those that the extension sets."""
-    for name in (*_ANALYSIS_SOCKETS, TABLE_SOCKET, MEANS_SOCKET):
+    for name in (*_ANALYSIS_SOCKETS, TABLE_SOCKET, MEANS_SOCKET, NATIVE_SOCKET):
         node.inputs[name].hide = True
 
 
@@ -454,6 +455,7 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
     )
     table.hide_value = means.hide_value = True
     _add_fact_sockets(interface)
+    _add_native_socket(interface)
     _put_basics_first(interface, panels[BASICS])
 
 
@@ -480,6 +482,18 @@ def _add_fact_sockets(interface: bpy.types.NodeTreeInterface) -> None:
         description="1 where the medium fills a point, 0 where another wins: for the density of a volume of your own",
     )
     interface.move(mask, len((CYCLES_OUTPUT, VOLUME_OUTPUT, PREVIEW_OUTPUT)))
+
+
+def _add_native_socket(interface: bpy.types.NodeTreeInterface) -> None:
+    """Made after all others, whose numbers stay."""
+    socket = interface.new_socket(
+        NATIVE_SOCKET,
+        in_out="INPUT",
+        socket_type="NodeSocketBool",
+        parent=interface.items_tree[ANALYSIS_PANEL],
+        description="Cycles' own nodes render the material, rather than the shader; set by Render With",
+    )
+    socket.hide_value = True
 
 
 def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:
