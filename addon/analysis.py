@@ -38,6 +38,7 @@ from .node_group import (
     GIVES_BACK_SOCKET,
     LEVEL_SOCKET,
     MATERIAL_SLOTS,
+    NATIVE_SOCKET,
     NEIGHBOUR_VALUES,
     OBJECT_PROPERTIES,
     OUTSIDE_SOCKET,
@@ -204,6 +205,7 @@ def clear_analysis(scene: bpy.types.Scene) -> None:
     for material in bpy.data.materials:
         if _is_told_of(material, number):
             _tell_material(material, Outside(), NO_SCENE)
+            _let_ask(material)
     told = {material for material in bpy.data.materials if _is_told_of(material)}
     for obj in bpy.data.objects:
         if not any(slot.material in told for slot in obj.material_slots):
@@ -998,6 +1000,8 @@ def _most_slots() -> dict[bpy.types.Material, int]:
     """Of all objects of each material; many where modifiers may make more."""
     most: dict[bpy.types.Material, int] = {}
     for obj in bpy.data.objects:
+        if is_cut_surface(obj):
+            continue  # whose slots are its medium's
         count = len(obj.material_slots)
         if any(modifier.type in ("NODES", "BOOLEAN") and not keeps_mesh(modifier) for modifier in obj.modifiers):
             count = MATERIAL_SLOTS
@@ -1037,6 +1041,13 @@ def _tell_material(material: bpy.types.Material, outside: Outside, number: int, 
         before = socket.default_value
         if not np.array_equal(np.float32(before if np.isscalar(before) else tuple(before)), np.float32(value)):
             socket.default_value = value
+
+
+def _let_ask(material: bpy.types.Material) -> None:
+    """Leave a material to the shader, as Cycles' own nodes cannot ask."""
+    socket = dielectric_node(material).inputs.get(NATIVE_SOCKET)
+    if material.library is None and socket is not None and socket.default_value:
+        socket.default_value = False
 
 
 def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
