@@ -88,7 +88,10 @@ class Chosen:
 
     def __str__(self) -> str:
         lines = [f"by Cycles' own nodes: {analysis.listed(self.native)}"] if self.native else []
-        lines += [f"{name!r} by OSL: {reason}" for name, reason in self.osl]
+        named: dict[str, list[str]] = {}
+        for name, reason in self.osl:
+            named.setdefault(reason, []).append(name)
+        lines += [f"by OSL: {analysis.listed(tuple(names))}: {reason}" for reason, names in named.items()]
         return "\n".join((*lines, *self.notes))
 
 

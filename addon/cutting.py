@@ -258,8 +258,8 @@ def _exchange_mesh(surface: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
 
 
 def show_strays() -> None:
-    """Let renders show media that are hidden in favour of surfaces of a scene that they are not in."""
-    shown = {obj for scene in bpy.data.scenes if is_cut(scene) or is_shown(scene) for obj in scene.objects}
+    """Let renders show media that are hidden in favour of surfaces that are not there."""
+    shown = {obj for scene in bpy.data.scenes for obj in _surfaces(scene)}
     for obj in bpy.data.objects:
         if obj not in shown:
             _unhide(obj)
