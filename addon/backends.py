@@ -222,6 +222,13 @@ def choose(scene: bpy.types.Scene) -> Chosen:
     return chosen
 
 
+def let_ask(scene: bpy.types.Scene) -> None:
+    """Leave all media of a scene to the shader until they are told again what surrounds them, if renders run it."""
+    if not is_native(scene):
+        for material in _users(scene):
+            _tell(material, False)
+
+
 def _reasons(scene: bpy.types.Scene, users: Users, needs: Sequence[Need]) -> dict[bpy.types.Material, str]:
     """Why materials are left to the shader; what is not named is not."""
     own: dict[str, str] = {}

@@ -75,6 +75,20 @@ def _analyse(scene: bpy.types.Scene) -> analysis.Found:
     return found
 
 
+def _distrust(scene: bpy.types.Scene) -> None:
+    analysis.distrust(scene)
+    backends.let_ask(scene)
+
+
+def _follow_or_distrust(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
+    """As :func:`analysis.follow_or_distrust`; media that begin to ask are left to the shader."""
+    were_asking = analysis.is_distrusted(scene)
+    ask = analysis.follow_or_distrust(scene, depsgraph)
+    if ask and not were_asking:
+        backends.let_ask(scene)
+    return ask
+
+
 def update_cut(scene: bpy.types.Scene) -> cutting.Cut:
     """Bring what renders show of a scene up to date if its surfaces are cut; return what was found. The scene is kept so from
     then on, as by :func:`analyse`.
@@ -152,7 +166,7 @@ def analyse_after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
     if not any(frame_scripts()):
         return
     if has_window():
-        analysis.distrust(scene)
+        _distrust(scene)
         _wait_for_rest()
         return
     _analyse(scene)
@@ -169,7 +183,7 @@ def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph)
     mend_nodes_of({update.id.original for update in depsgraph.updates})
     if not has_window():
         analysis.follow(scene, depsgraph)
-    elif analysis.follow_or_distrust(scene, depsgraph):
+    elif _follow_or_distrust(scene, depsgraph):
         _wait_for_rest()
     _trust(scene)
 
@@ -226,7 +240,7 @@ def distrust_loaded(*_: object) -> None:
     """Believe nothing that a file tells: it may have been changed without the extension. Nobody waits for a look at it."""
     analysis.forget_shapes()
     for scene in _analysed_scenes():
-        analysis.distrust(scene)
+        _distrust(scene)
     if has_window() and (_analysed_scenes() or _cut_scenes()):
         _wait_for_rest()
 

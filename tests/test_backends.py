@@ -171,6 +171,22 @@ def test_media_that_ask_again_are_left_to_the_shader(scene):
     assert sockets() == {"Ball": False}
 
 
+def test_in_a_window_media_are_left_to_the_shader_while_they_are_moved(scene, monkeypatch):
+    """They ask then, and a rendered view would show the alarm."""
+    monkeypatch.setattr(live, "has_window", lambda: True)
+    monkeypatch.setattr(live, "_wait_for_rest", lambda: None)
+    body = ball()
+    nd.prepare(scene)
+    bpy.context.view_layer.update()
+    assert sockets() == {"Ball": True}
+    body.location.x = 1.0
+    bpy.context.view_layer.update()
+    assert sockets() == {"Ball": False}
+    live.analyse_at_rest()
+    bpy.context.view_layer.update()
+    assert sockets() == {"Ball": True}
+
+
 # What needs the shader ----------------------------------------------------------------------------------------------
 
 
