@@ -263,7 +263,8 @@ def test_things_in_tinted_media_need_the_shader_unless_the_volume_absorbs_for_al
     ball("Clear", 1.5, priority=0).scale = (0.5, 0.5, 0.5)
     dielectric_node(bpy.data.materials["Ball"]).inputs["Priority"].default_value = 5
     nd.prepare(scene, cut=True)
-    assert sockets()["Ball"] == (dielectric_node(bpy.data.materials["Ball"]).inputs[node_group.BY_VOLUME_SOCKET].default_value > 0)
+    by_volume = dielectric_node(bpy.data.materials["Ball"]).inputs[node_group.BY_VOLUME_SOCKET].default_value > 0
+    assert sockets()["Ball"] == by_volume
 
 
 # Preparing ------------------------------------------------------------------------------------------------------------

@@ -64,7 +64,8 @@ def parameters_page() -> str:
 def _parameter_row(parameter: Parameter) -> tuple[str, ...]:
     label = parameter.label
     name = f"**{parameter.name}**" + (f" (*{label}* on the panel)" if label else "")
-    return name, f"`{parameter.keyword}`", _default(parameter), _values(parameter), parameter.description, _bodies(parameter.limit)
+    cells = _default(parameter), _values(parameter), parameter.description, _bodies(parameter.limit)
+    return name, f"`{parameter.keyword}`", *cells
 
 
 def _bodies(limit: Limit | None) -> str:
