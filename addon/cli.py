@@ -167,7 +167,7 @@ def _add_backend(parser: argparse.ArgumentParser) -> None:
         "--backend",
         type=str.upper,
         choices=[choice.keyword for choice in BACKENDS],
-        help="what renders media: Cycles' own nodes (NATIVE), the shader (OSL), or what fits best (AUTO; default: as the file has it)",
+        help="what renders media: Cycles' own nodes, the shader in OSL, or what fits best (default: as the file has it)",
     )
 
 
