@@ -39,6 +39,7 @@ from .node_group import (
     GIVES_BACK_SOCKET,
     LEVEL_SOCKET,
     MATERIAL_SLOTS,
+    NATIVE_SOCKET,
     NEIGHBOUR_VALUES,
     OBJECT_PROPERTIES,
     OUTSIDE_SOCKET,
@@ -206,6 +207,7 @@ def clear_analysis(scene: bpy.types.Scene) -> None:
     for material in bpy.data.materials:
         if _is_told_of(material, number):
             _tell_material(material, Outside(), NO_SCENE)
+            _let_ask(material)
     told = {material for material in bpy.data.materials if _is_told_of(material)}
     for obj in bpy.data.objects:
         if not any(slot.material in told for slot in obj.material_slots):
@@ -1020,6 +1022,8 @@ def _most_slots() -> dict[bpy.types.Material, int]:
     """Of all objects of each material; many where modifiers may make more."""
     most: dict[bpy.types.Material, int] = {}
     for obj in bpy.data.objects:
+        if is_cut_surface(obj):
+            continue  # whose slots are its medium's
         count = len(obj.material_slots)
         if any(modifier.type in ("NODES", "BOOLEAN") and not keeps_mesh(modifier) for modifier in obj.modifiers):
             count = MATERIAL_SLOTS
@@ -1061,6 +1065,13 @@ def _tell_material(material: bpy.types.Material, outside: Outside, number: int, 
             socket.default_value = value
 
 
+def _let_ask(material: bpy.types.Material) -> None:
+    """Leave a material to the shader, as Cycles' own nodes cannot ask."""
+    socket = dielectric_node(material).inputs.get(NATIVE_SOCKET)
+    if material.library is None and socket is not None and socket.default_value:
+        socket.default_value = False
+
+
 def _tell_object(obj: bpy.types.Object, outside: Outside | None) -> None:
     """Write an object's custom properties, or with None remove them."""
     if obj.library is not None:
@@ -1092,6 +1103,12 @@ def _facts_in_one(outside: Outside) -> float:
     return float(
         outside.code + 8 * outside.overlaps_itself + 16 * (not outside.foreign) + 32 * outside.absorbs + 64 * level
     )
+
+
+def told_foreign(obj: bpy.types.Object) -> bool:
+    """Tell whether an object's own properties leave it open that something that is no medium stands in it."""
+    values = _four(obj.get(OBJECT_PROPERTIES[0]))
+    return values is None or not int(values[0]) & 16
 
 
 def _forget_faces(obj: bpy.types.Object) -> None:

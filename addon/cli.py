@@ -17,7 +17,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from .compatibility import require_blender
+from .compatibility import BACKENDS, OSL, require_blender
 from .files import absolute, ending_at_once, replacing
 from .iced_water import build_scene
 from .jf import JfError, read_nodes, report, translate
@@ -88,6 +88,7 @@ def _parser() -> argparse.ArgumentParser:
     render.add_argument(
         "--no-cut", action="store_true", help="render media as they are; the default cuts their surfaces where they cross"
     )
+    _add_backend(render)
     render.set_defaults(run=_render)
 
     preparation = commands.add_parser(
@@ -101,6 +102,7 @@ def _parser() -> argparse.ArgumentParser:
         help="let renders of the file show surfaces cut where media cross, that of its frame kept in the file for farms; or not "
         "(default: as the file has it)",
     )
+    _add_backend(preparation)
     preparation.set_defaults(run=_prepare)
 
     update = commands.add_parser(
@@ -160,6 +162,15 @@ def _add_saved(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", type=_blend, metavar="OUT.blend", help="file to write (default: FILE itself)")
 
 
+def _add_backend(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--backend",
+        type=str.upper,
+        choices=[choice.keyword for choice in BACKENDS],
+        help="what renders media: Cycles' own nodes, the shader in OSL, or what fits best (default: as the file has it)",
+    )
+
+
 def _file(text: str) -> Path:
     if not text or text.endswith(("/", os.sep)):
         raise argparse.ArgumentTypeError(f"{text!r} is no file's name")
@@ -212,7 +223,7 @@ TRIAL_SAMPLES, TRIAL_PERCENTAGE = 32, 15
 def _saving(scene: bpy.types.Scene) -> str:
     """What a scene saves by being cut, in a sentence."""
     cut = sampling_time(scene, TRIAL_SAMPLES, TRIAL_PERCENTAGE)
-    prepare(scene, cut=False)
+    prepare(scene, cut=False, backend=OSL)
     asking = sampling_time(scene, TRIAL_SAMPLES, TRIAL_PERCENTAGE)
     return f"a sample takes {cut / asking:.2f} of the time that it takes without cut surfaces (CPU, a small picture)"
 
@@ -220,13 +231,13 @@ def _saving(scene: bpy.types.Scene) -> str:
 def _render(options: argparse.Namespace) -> None:
     file_format_of(options.output)
     scene = _open(options.file)
-    print(prepare(scene, cut=not options.no_cut), flush=True)
+    print(prepare(scene, not options.no_cut, options.backend), flush=True)
     print(render_frame(scene, options.output, options.samples, options.frame, ProgressLine()))
 
 
 def _prepare(options: argparse.Namespace) -> None:
     scene = _open(options.file)
-    print(prepare(scene, options.cut))
+    print(prepare(scene, options.cut, options.backend))
     if options.cut:
         hindrance = keep_cut(scene)
         print(f"each frame is cut as it is rendered: {hindrance}" if hindrance else f"the cut of frame {scene.frame_current} is in the file")

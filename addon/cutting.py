@@ -16,6 +16,7 @@ import numpy as np
 
 from . import analysis
 from .animation import curves
+from .compatibility import is_native
 from .cutting_nodes import (
     BODY_INPUT,
     CUT_GROUP,
@@ -38,7 +39,7 @@ from .foreign import RAY_KINDS
 from .materials import dielectric_node
 from .media import CUT_OF, HIDDEN_BY_CUT
 from .native_nodes import TELLS_COLOUR, TELLS_DISPERSION
-from .node_group import CUT
+from .node_group import CUT, VERSION_PROPERTY
 from .shapes import content_of
 
 COLLECTION = "Nested Dielectric Cut"
@@ -81,20 +82,33 @@ ALIKE_IN_CYCLES = (
 """What a render makes of an object beside its shape."""
 
 
-def is_cut(scene: bpy.types.Scene) -> bool:
-    """Tell whether a scene's surfaces are cut where media cross: a setting of the scene."""
+def is_set_to_cut(scene: bpy.types.Scene) -> bool:
+    """Tell whether the artist wants a scene's surfaces cut where media cross: a setting of the scene."""
     return bool(scene.get(CUT_SETTING))
 
 
+def is_cut(scene: bpy.types.Scene) -> bool:
+    """Tell whether a scene's surfaces are cut where media cross: by its setting, or because Cycles' own nodes render all media,
+    which cannot ask.
+    """
+    return is_set_to_cut(scene) or (is_native(scene) and any(VERSION_PROPERTY in tree for tree in bpy.data.node_groups))
+
+
+def is_shown(scene: bpy.types.Scene) -> bool:
+    """Tell whether renders of a scene show any surfaces in place of media."""
+    return _find_collection(scene) is not None
+
+
 def set_cut(scene: bpy.types.Scene, cut: bool) -> None:
-    """Render the media of a scene as surfaces that are cut where they cross, or as they are.
+    """Render the media of a scene as surfaces that are cut where they cross, or as they are, as far as they can ask.
 
     Nothing of the artist's is changed but that media are hidden from renders, which goes back.
     """
     if cut:
         scene[CUT_SETTING] = True
     else:
-        show_whole(scene)
+        scene.pop(CUT_SETTING, None)
+        end_cut(scene)
 
 
 def cut_surfaces(scene: bpy.types.Scene, scripted: bool = False) -> Cut:
@@ -102,12 +116,21 @@ def cut_surfaces(scene: bpy.types.Scene, scripted: bool = False) -> Cut:
 
     :param scripted: a script may change any object on any frame.
     """
-    plan, found = make_plan(scene, scripted)
+    plan, found = make_plan(scene, scripted, is_native(scene))
     _show(scene, plan)
     _drop_if_changed(scene, plan)
     show_strays()
     _last[scene.session_uid] = found, _settings(scene)
     return found
+
+
+def end_cut(scene: bpy.types.Scene) -> None:
+    """Let renders show the artist's own objects again if the scene is not cut any more."""
+    if is_cut(scene):
+        return
+    if is_shown(scene):
+        _clear(scene)
+    _last.pop(scene.session_uid, None)
 
 
 _last: dict[int, tuple[Cut, tuple]] = {}
@@ -121,12 +144,12 @@ def last_cut(scene: bpy.types.Scene) -> Cut | None:
 
 def _settings(scene: bpy.types.Scene) -> tuple:
     """Settings of a scene by which media are cut or not."""
-    return scene.render.use_motion_blur, scene.render.motion_blur_shutter > 0.0
+    return scene.render.use_motion_blur, scene.render.motion_blur_shutter > 0.0, is_native(scene)
 
 
 def show_whole(scene: bpy.types.Scene) -> bool:
-    """Render the artist's own objects again; return whether they were not."""
-    was_cut = is_cut(scene)
+    """Take the setting and all that shows surfaces away; return whether there was any."""
+    was_cut = is_set_to_cut(scene) or is_shown(scene)
     scene.pop(CUT_SETTING, None)
     _clear(scene)
     _last.pop(scene.session_uid, None)
@@ -151,7 +174,7 @@ def keep_in_file(scene: bpy.types.Scene, scripted: bool = False) -> str:
     cut as ever. :func:`forget_kept` takes it back. Returns why that cannot be, or nothing.
     """
     surfaces = _surfaces(scene)
-    plan, _ = make_plan(scene, scripted)
+    plan, _ = make_plan(scene, scripted, is_native(scene))
     if not surfaces or _holder(scene).get(PLAN) != _described(plan):
         return "nothing is cut, or something has changed since; press Prepare Scene"
     if scene.render.use_simplify:
@@ -236,8 +259,8 @@ def _exchange_mesh(surface: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
 
 
 def show_strays() -> None:
-    """Let renders show media that are hidden in favour of surfaces of a scene that they are not in."""
-    shown = {obj for scene in bpy.data.scenes if is_cut(scene) for obj in scene.objects}
+    """Let renders show media that are hidden in favour of surfaces that are not there."""
+    shown = {obj for scene in bpy.data.scenes for obj in _surfaces(scene)}
     for obj in bpy.data.objects:
         if obj not in shown:
             _unhide(obj)
@@ -254,8 +277,10 @@ _CONCERNED = (
 
 def concerns(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
     """Tell whether an update may change which media of a scene that is cut cross, or how they are shown. To select does not."""
+    if not is_cut(scene):
+        return is_shown(scene)
     known = _last.get(scene.session_uid)
-    return is_cut(scene) and (
+    return (
         known is None
         or known[1] != _settings(scene)
         or any(

@@ -47,14 +47,19 @@ class Cut:
 
 
 @unchanged_nodes()
-def make_plan(scene: bpy.types.Scene, scripted: bool = False) -> tuple[Plan, Cut]:
-    """Tell what to cut of a scene, as :func:`cut_surfaces` does."""
+def make_plan(scene: bpy.types.Scene, scripted: bool = False, native: bool = False) -> tuple[Plan, Cut]:
+    """Tell what to cut of a scene.
+
+    :param scripted: a script may change any object on any frame.
+    :param native: no medium may ask: those of which the analysis knows nothing are cut, too, so that their faces tell what
+        they are in, alone or not.
+    """
     hidden = set(scene.objects) - _in_shown_collections(scene.collection)
     objects = [obj for obj in media(scene) if is_rendered(obj) and obj not in hidden]
     hindered = _hindrances(scene, objects)
     moving = set(objects) if scripted else {obj for obj in objects if analysis.may_change(obj)}
     known = None if moving else _surroundings(scene, objects)
-    touching = _touching(objects, moving, known)
+    touching = touching_media(objects, moving, known)
     whole = _needed_whole(scene, objects, touching)
     for obj in whole - hindered.keys():
         if any(_layer_of(other) == _layer_of(obj) for other in touching[obj]):
@@ -64,12 +69,12 @@ def make_plan(scene: bpy.types.Scene, scripted: bool = False) -> tuple[Plan, Cut
             hindered.setdefault(obj, "has faces in the same place as another; press Prepare Scene, or let them overlap")
     asking: list[tuple[str, str]] = []
     chosen: list[bpy.types.Object] = []
-    for group in _components(objects, touching):
+    for group in components(objects, touching):
         bad = [obj for obj in group if obj in hindered]
         asking += [(obj.name, hindered[obj]) for obj in bad]
         if bad:
             asking += [(obj.name, f"may meet {bad[0].name!r}, which is not cut") for obj in group if obj not in hindered]
-        elif len(group) > 1 and any(known is None or known[obj].may_cross for obj in group):
+        elif _has_to_be_cut(group, known) if native else len(group) > 1 and _may_cross(group, known):
             chosen += group
     layers, pairs = _layers(chosen, whole, touching, known)
     if moving and len(layers) > MOST_LAYERS:
@@ -77,6 +82,16 @@ def make_plan(scene: bpy.types.Scene, scripted: bool = False) -> tuple[Plan, Cut
         return Plan(), Cut((), (*asking, *((obj.name, reason) for obj in chosen)))
     plan = Plan(layers, pairs, bool(moving), _attributes(scene, chosen))
     return plan, Cut(tuple(obj.name for obj in chosen), tuple(asking))
+
+
+def _may_cross(group: Sequence[bpy.types.Object], known: dict[bpy.types.Object, _Surroundings] | None) -> bool:
+    """Whether surfaces of media that hang together may have more than one outside each."""
+    return known is None or any(known[obj].may_cross for obj in group)
+
+
+def _has_to_be_cut(group: Sequence[bpy.types.Object], known: dict[bpy.types.Object, _Surroundings] | None) -> bool:
+    """Whether only their faces can tell some of these media what they are in."""
+    return _may_cross(group, known) or not all(known[obj].is_told for obj in group)
 
 
 def _layer_of(obj: bpy.types.Object) -> tuple[int, bpy.types.Material]:
@@ -199,6 +214,7 @@ class _Surroundings:
     :param code: as of a :class:`~nested_dielectric.contacts.Contact`; around: the medium outside of code MEDIUM.
     :param partners: media whose surfaces cross its own or that hold part of it.
     :param is_simple: its surface is in one piece; coincides: some of it is in the same place as another's.
+    :param is_told: it knows by the analysis alone what lies outside it.
     """
 
     code: int
@@ -206,6 +222,7 @@ class _Surroundings:
     partners: tuple[bpy.types.Object, ...]
     is_simple: bool
     coincides: bool
+    is_told: bool
 
     @property
     def may_cross(self) -> bool:
@@ -221,6 +238,7 @@ def _surroundings(
     rows, contacts = analysis.looked_at(scene)
     if found is None or found.doubts or len(rows) != len(objects) or {obj for obj, _ in rows} != set(objects):
         return None
+    told = set(found.known)
     return {
         obj: _Surroundings(
             contact.code,
@@ -228,15 +246,16 @@ def _surroundings(
             tuple(rows[partner][0] for partner in contact.partners),
             len(body.solid.by_island[1]) == 2,
             bool(contact.coincident),
+            obj.name in told,
         )
         for (obj, body), contact in zip(rows, contacts)
     }
 
 
-def _touching(
-    objects: Sequence[bpy.types.Object], moving: set[bpy.types.Object], known: dict | None
+def touching_media(
+    objects: Sequence[bpy.types.Object], moving: set[bpy.types.Object], known: dict | None = None
 ) -> dict[bpy.types.Object, list[bpy.types.Object]]:
-    """Which media may meet: those that do, or whose boxes do; what moves may meet all."""
+    """Return which media may meet: those that do, or where nothing is known those whose boxes do; what moves may meet all."""
     if known is not None:
         pairs = {frozenset((obj, other)) for obj in objects for other in (*known[obj].partners, known[obj].around) if other}
     else:
@@ -261,7 +280,7 @@ def _box(obj: bpy.types.Object, matrix: Matrix | None = None) -> np.ndarray:
     return np.array([corners.min(axis=0), corners.max(axis=0)])
 
 
-def _components(objects: Iterable[bpy.types.Object], touching: dict) -> Iterable[list[bpy.types.Object]]:
+def components(objects: Iterable[bpy.types.Object], touching: dict) -> Iterable[list[bpy.types.Object]]:
     """Yield sets of media that hang together."""
     left = dict.fromkeys(objects)
     while left:
@@ -334,7 +353,7 @@ def _tells_more(material: bpy.types.Material) -> bool:
     node = dielectric_node(material)
     model = node.inputs["Dispersion Model"]
     return (
-        _may_absorb(material)
+        may_absorb(material)
         or is_in_use(node, "Disperse")
         or model.default_value == 2
         or model.is_linked
@@ -348,7 +367,8 @@ def is_in_use(node: bpy.types.ShaderNodeGroup, name: str) -> bool:
     return bool(socket.default_value) or socket.is_linked or is_animated(node.id_data, socket)
 
 
-def _may_absorb(material: bpy.types.Material) -> bool:
+def may_absorb(material: bpy.types.Material) -> bool:
+    """Tell whether a medium has colour, now or on some frame."""
     socket = dielectric_node(material).inputs["Transmittance"]
     return min(socket.default_value[:3]) < 1.0 or socket.is_linked or is_animated(material.node_tree, socket)
 
@@ -362,7 +382,7 @@ def _needed_whole(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object], t
     dirty = {obj for obj in objects if mixed[medium_material(obj)]} | labelled
     near = _others_near(scene, objects) | dirty.union(*(touching[obj] for obj in dirty))
     blind = {obj for obj in dirty if shows_others_blindly(medium_material(obj))}
-    return labelled | blind | {obj for obj in near if _may_absorb(medium_material(obj))}
+    return labelled | blind | {obj for obj in near if may_absorb(medium_material(obj))}
 
 
 def _others_near(scene: bpy.types.Scene, objects: Sequence[bpy.types.Object]) -> set[bpy.types.Object]:

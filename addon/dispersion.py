@@ -13,7 +13,7 @@ References:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import nan, sqrt
+from math import inf, nan, sqrt
 
 import numpy as np
 
@@ -92,3 +92,19 @@ def abbe_number(values: dict) -> float:
     """V_d = (n_d - 1) / (n_F - n_C) of a material's parameters; infinite where nothing disperses."""
     spread = material_ior(values, LINE_F) - material_ior(values, LINE_C)
     return (material_ior(values, LINE_D) - 1.0) / spread if spread else float("inf")
+
+
+VISIBLE = (380, 780)
+"""nm."""
+
+
+def abbe_deviation(values: dict) -> float:
+    """By how much the index of Cauchy's two terms, through a material's own at the d line and with its Abbe number, is off the
+    material's own index at most over visible light. NaN where it has none.
+    """
+    ior, abbe = material_ior(values, LINE_D), abbe_number(values)
+    if abbe == inf:
+        abbe = 0.0
+    return float(
+        max(abs(abbe_ior(ior, abbe, nm) - material_ior(values, nm)) for nm in range(VISIBLE[0], VISIBLE[1] + 1))
+    )

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 import bpy
 
-from . import analysis, cutting
+from . import analysis, backends, cutting
 from .identity import NO_SCENE, known_number
 from .lights import update_lights
 from .trees import mend_nodes
@@ -75,11 +75,26 @@ def _analyse(scene: bpy.types.Scene) -> analysis.Found:
     return found
 
 
+def _distrust(scene: bpy.types.Scene) -> None:
+    analysis.distrust(scene)
+    backends.let_ask(scene)
+
+
+def _follow_or_distrust(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
+    """As :func:`analysis.follow_or_distrust`; media that begin to ask are left to the shader."""
+    were_asking = analysis.is_distrusted(scene)
+    ask = analysis.follow_or_distrust(scene, depsgraph)
+    if ask and not were_asking:
+        backends.let_ask(scene)
+    return ask
+
+
 def update_cut(scene: bpy.types.Scene) -> cutting.Cut:
     """Bring what renders show of a scene up to date if its surfaces are cut; return what was found. The scene is kept so from
     then on, as by :func:`analyse`.
     """
     if not cutting.is_cut(scene):
+        cutting.end_cut(scene)
         return cutting.Cut()
     install()
     return cutting.cut_surfaces(scene, scripted=any(frame_scripts()))
@@ -92,7 +107,7 @@ def keep_cut(scene: bpy.types.Scene) -> str:
 
 
 def _cut_scenes() -> list[bpy.types.Scene]:
-    return [scene for scene in bpy.data.scenes if cutting.is_cut(scene) and scene.library is None]
+    return [scene for scene in bpy.data.scenes if scene.library is None and (cutting.is_cut(scene) or cutting.is_shown(scene))]
 
 
 def _trust(scene: bpy.types.Scene) -> None:
@@ -126,6 +141,7 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
         mend_nodes_of(bpy.data.materials)
         _analyse(scene)
     update_cut(scene)
+    backends.choose(scene)
 
 
 @bpy.app.handlers.persistent
@@ -150,10 +166,11 @@ def analyse_after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
     if not any(frame_scripts()):
         return
     if has_window():
-        analysis.distrust(scene)
+        _distrust(scene)
         _wait_for_rest()
         return
     _analyse(scene)
+    backends.choose(scene)
 
 
 @bpy.app.handlers.persistent
@@ -166,7 +183,7 @@ def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph)
     mend_nodes_of({update.id.original for update in depsgraph.updates})
     if not has_window():
         analysis.follow(scene, depsgraph)
-    elif analysis.follow_or_distrust(scene, depsgraph):
+    elif _follow_or_distrust(scene, depsgraph):
         _wait_for_rest()
     _trust(scene)
 
@@ -193,6 +210,8 @@ def analyse_at_rest() -> float | None:
         _analyse(scene)
     for scene in _cut_scenes():
         update_cut(scene)
+    for scene in {*_analysed_scenes(), *_cut_scenes()}:
+        backends.choose(scene)
     return None
 
 
@@ -221,7 +240,7 @@ def distrust_loaded(*_: object) -> None:
     """Believe nothing that a file tells: it may have been changed without the extension. Nobody waits for a look at it."""
     analysis.forget_shapes()
     for scene in _analysed_scenes():
-        analysis.distrust(scene)
+        _distrust(scene)
     if has_window() and (_analysed_scenes() or _cut_scenes()):
         _wait_for_rest()
 
@@ -243,6 +262,8 @@ def narrow_before_save(*_: object) -> None:
         analysis.trust(scene, every_frame=False)
     for scene in _cut_scenes():
         update_cut(scene)
+    for scene in {*_analysed_scenes(), *_cut_scenes()}:
+        backends.choose(scene)
 
 
 @bpy.app.handlers.persistent

@@ -356,6 +356,7 @@ def dielectric_node(material: bpy.types.Material | None) -> bpy.types.ShaderNode
     return node if _KINDS <= {(socket.name, socket.type) for socket in node.inputs} and shows_dielectric(material) else None
 
 
+@looked_up_once
 def rendered_node(material: bpy.types.Material) -> bpy.types.ShaderNodeGroup | None:
     """Return the node that renders a nested dielectric: that of :func:`dielectric_node` unless it stands in a group."""
     places = dielectric_places(material)

@@ -97,9 +97,6 @@ CUT_ATTRIBUTES = (
 )
 """Of faces that are cut: what lies outside them, as in osl/cut.h."""
 
-NATIVE_SOCKET = "Native"
-"""Input of the group: Cycles' own nodes render the material, not the shader."""
-
 ANALYSIS_PANEL = "Scene Analysis"
 SCENE_SOCKET = "Analysed Scene"
 OUTSIDE_SOCKET = "Outside"
@@ -111,6 +108,9 @@ GIVES_BACK_SOCKET = "Gives Back"
 SURROUNDINGS_SOCKET = "Surroundings"
 SURROUNDINGS_COLOR_SOCKET = "Surroundings Transmittance"
 SLOTS_SOCKET = "Material Slots"
+NATIVE_SOCKET = "Native"
+"""Input of the group: Cycles' own nodes render the material, not the shader."""
+
 AIR_AROUND = (0.0, 1.0, 0.0)
 """Priority, IOR and Transmittance Depth of surroundings that are told to nobody."""
 
@@ -476,6 +476,18 @@ def _add_fact_sockets(interface: bpy.types.NodeTreeInterface) -> None:
     interface.move(mask, len((CYCLES_OUTPUT, VOLUME_OUTPUT, PREVIEW_OUTPUT)))
 
 
+def _add_native_socket(interface: bpy.types.NodeTreeInterface) -> None:
+    """Made after all others, whose numbers stay."""
+    socket = interface.new_socket(
+        NATIVE_SOCKET,
+        in_out="INPUT",
+        socket_type="NodeSocketBool",
+        parent=interface.items_tree[ANALYSIS_PANEL],
+        description="Cycles' own nodes render the material, rather than the shader; set by Render With",
+    )
+    socket.hide_value = True
+
+
 def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:
     """What the analysis of the scene tells of all objects of a material; defaults tell nothing, and hold everywhere."""
     panel = interface.new_panel(
@@ -489,18 +501,6 @@ def _add_analysis_sockets(interface: bpy.types.NodeTreeInterface) -> None:
         )
         socket.default_value = default
         socket.hide_value = True
-
-
-def _add_native_socket(interface: bpy.types.NodeTreeInterface) -> None:
-    """Made after all others, as their numbers are what keyframes know them by."""
-    socket = interface.new_socket(
-        NATIVE_SOCKET,
-        in_out="INPUT",
-        socket_type="NodeSocketBool",
-        parent=interface.items_tree[ANALYSIS_PANEL],
-        description="Cycles' own nodes render the material on any device, Open Shading Language does not; kept by the extension",
-    )
-    socket.hide_value = True
 
 
 def _set_limits(socket: bpy.types.NodeTreeInterfaceSocket, parameter: Parameter) -> None:

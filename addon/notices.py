@@ -8,6 +8,7 @@ import textwrap
 
 import bpy
 
+from .backends import last_chosen
 from .compatibility import achromatic_reason, blender_problem, settings_problem
 from .drawing import draw_alert
 from .media_list import listed_media
@@ -27,7 +28,19 @@ def render_problem(scene: bpy.types.Scene) -> str | None:
         return settings
     if listed.problems:
         return str(listed.problems[0])
+    asking = _asking(scene) if listed.rows else None
+    if asking:
+        return asking
     return achromatic_reason(scene) if listed.disperses else None
+
+
+def _asking(scene: bpy.types.Scene) -> str | None:
+    """The first medium that must ask though nothing in the scene's renders can."""
+    chosen = last_chosen(scene)
+    if chosen is None or not chosen.asking:
+        return None
+    name, reason = chosen.asking[0]
+    return f"{name!r} {reason}, which Cycles' own nodes cannot; mend it, or press Prepare Scene"
 
 
 def draw_in_properties(self: bpy.types.Panel, context: bpy.types.Context) -> None:

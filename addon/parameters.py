@@ -10,7 +10,7 @@ sockets.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, isfinite
 from typing import Any
 
@@ -36,6 +36,47 @@ class ParameterError(ValueError):
     """An unknown parameter, or a value that it cannot take. The text names both and the remedy."""
 
 
+LAMPS_BY_LOBE = "lamps_by_lobe"
+"""Stands among what parameters need for lamps of the scene that the lobes of direct refraction and reflection carry."""
+
+TINTED_MEDIA = "tinted_media"
+"""Stands there for colour of the medium, or of one that it may touch."""
+
+
+@dataclass(frozen=True)
+class Limit:
+    """Where Cycles' own nodes render a parameter otherwise than the shader does.
+
+    :param text: what they do instead, after "Cycles' own nodes".
+    :param alone: they have nothing like it, else they come near.
+    :param before: the limit is gone from this version of Blender on; None if it stays.
+    :param decides: the parameter alone makes a medium need the shader, else another of the same limit, or the scene.
+    :param neutral: value at which the parameter does nothing; None for the parameter's default.
+    :param needs: keywords of which one must be at work for the limit to show.
+    """
+
+    text: str
+    alone: bool = False
+    before: tuple[int, int, int] | None = None
+    decides: bool = True
+    neutral: Any = None
+    needs: tuple[str, ...] = ()
+
+
+APART = Limit(
+    "weigh reflection by the surface, not by its facets, where it is rough or has a film",
+    needs=("roughness", "reflection_roughness", "thin_film_thickness"),
+)
+LOBES = Limit("have no lobes of their own for lamps and the world", alone=True, neutral=False)
+LOBE_SHAPES = replace(LOBES, decides=False)
+ANISOTROPIC = Limit("are isotropic before Blender 5.3", before=(5, 3, 0))
+ANISOTROPIC_WAYS = replace(ANISOTROPIC, decides=False)
+DISPERSION = Limit("split light by an Abbe number, in daylight, and not before Blender 5.3")
+DISPERSION_CURVE = Limit("take its Abbe number alone", decides=False)
+SPECTRUM = Limit("split light in daylight, in the working space, unclamped", alone=True, decides=False)
+GLOW = Limit("do not tint what glows behind a medium", needs=(TINTED_MEDIA,))
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One parameter of the material.
@@ -44,7 +85,8 @@ class Parameter:
     word in Python, its place among the choices in the socket: neighbours cannot read menus), ``TEXT`` and
     ``SHADER``; ``minimum`` and ``maximum`` are hard limits, ``unit`` the subtype of the socket (``FACTOR``,
     ``DISTANCE``, ``WAVELENGTH``, ``DIRECTION`` or empty). ``label`` is a shorter name for panels whose heading says the
-    rest; ``needs`` are keywords of which one must not be 0, off or white for this parameter to show in the picture.
+    rest; ``needs`` are keywords of which one must not be 0, off or white for this parameter to show in the picture;
+    ``limit`` is where Cycles' own nodes do otherwise than the shader.
     """
 
     name: str
@@ -58,6 +100,7 @@ class Parameter:
     choices: tuple[Choice, ...] = ()
     label: str = ""
     needs: tuple[str, ...] = ()
+    limit: Limit | None = None
 
     @property
     def keyword(self) -> str:
@@ -208,9 +251,6 @@ BASIC_KEYWORDS = ("transmittance", "transmittance_depth", "ior", "roughness", "p
 
 SPECTRUM_PANEL = "Spectrum"
 
-LAMPS_BY_LOBE = "lamps_by_lobe"
-"""Stands among what parameters need for lamps of the scene that the lobes of direct refraction and reflection carry."""
-
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "Priority",
@@ -242,6 +282,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         0.0,
         1.0,
         label="Colour",
+        limit=Limit("leave rays to objects within it untinted where its volume cannot take them all", decides=False),
     ),
     Parameter(
         "Transmittance Depth",
@@ -263,6 +304,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         False,
         "Splits light into its colours where it enters or leaves: rainbows behind prisms, fire in diamonds. "
         "Colours that another medium has split are bent by this one's own dispersion, with or without this",
+        limit=DISPERSION,
     ),
     Parameter(
         "Dispersion Model",
@@ -272,6 +314,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "How the index of refraction changes with the wavelength (in the node: 0 Abbe, 1 Sellmeier, 2 JF)",
         choices=DISPERSION_MODELS,
         label="Model",
+        limit=DISPERSION_CURVE,
     ),
     Parameter(
         "Abbe",
@@ -292,6 +335,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "shifted to go through IOR",
         -1e4,
         1e4,
+        limit=DISPERSION_CURVE,
     ),
     Parameter(
         "Sellmeier C",
@@ -302,6 +346,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "them",
         0.0,
         1e6,
+        limit=DISPERSION_CURVE,
     ),
     Parameter(
         "Dispersion",
@@ -313,6 +358,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         -10.0,
         10.0,
         label="Spread",
+        limit=DISPERSION_CURVE,
     ),
     Parameter(
         "Roughness",
@@ -344,6 +390,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         -0.99,
         0.99,
         needs=("roughness", LAMPS_BY_LOBE, "direct_world"),
+        limit=ANISOTROPIC,
     ),
     Parameter(
         "Separate Reflection",
@@ -351,6 +398,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "BOOL",
         False,
         "Lets reflections have a roughness of their own, such as a sharp varnish on frosted glass",
+        limit=APART,
     ),
     Parameter(
         "Reflection Roughness",
@@ -381,6 +429,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         -0.99,
         0.99,
         needs=("reflection_roughness",),
+        limit=ANISOTROPIC,
     ),
     Parameter(
         "Tangent From",
@@ -390,6 +439,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Which way along the surface anisotropy stretches the blur",
         choices=TANGENTS,
         needs=("anisotropy", "reflection_anisotropy", "direct_anisotropy"),
+        limit=ANISOTROPIC_WAYS,
     ),
     Parameter(
         "Tangent",
@@ -400,6 +450,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "the object's Z axis",
         unit="DIRECTION",
         needs=("anisotropy", "reflection_anisotropy", "direct_anisotropy"),
+        limit=ANISOTROPIC_WAYS,
     ),
     Parameter(
         "Blur Anisotropic Poles",
@@ -413,6 +464,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Blur Poles",
         needs=("anisotropy", "reflection_anisotropy", "direct_anisotropy"),
+        limit=ANISOTROPIC_WAYS,
     ),
     Parameter(
         "Normal",
@@ -457,6 +509,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         1.0,
         "FACTOR",
         label="Refraction",
+        limit=APART,
     ),
     Parameter(
         "Specular Scale",
@@ -468,6 +521,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         1.0,
         "FACTOR",
         label="Reflection",
+        limit=APART,
     ),
     Parameter(
         "Refract Sky",
@@ -475,6 +529,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "BOOL",
         True,
         "Shows the world behind the medium. Off, what is seen through it is black where nothing else stands there",
+        limit=APART,
     ),
     Parameter(
         "Reflect Sky",
@@ -482,6 +537,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "BOOL",
         True,
         "Mirrors the world in the medium's outside. Off, reflections are black where nothing else stands there",
+        limit=APART,
     ),
     Parameter(
         "Direct Refraction",
@@ -495,6 +551,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Refraction",
         needs=(LAMPS_BY_LOBE,),
+        limit=LOBES,
     ),
     Parameter(
         "Direct Reflection",
@@ -508,6 +565,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Reflection",
         needs=(LAMPS_BY_LOBE,),
+        limit=LOBES,
     ),
     Parameter(
         "Separate Direct Lobe",
@@ -517,6 +575,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Gives highlights of refracted lamps the roughness below; off, they are as rough as refraction is",
         label="Separate Highlights",
         needs=(LAMPS_BY_LOBE, "direct_world"),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Direct Roughness",
@@ -529,6 +588,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Roughness",
         needs=("separate_direct_lobe",),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Direct Distribution",
@@ -539,6 +599,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         choices=DISTRIBUTIONS,
         label="Distribution",
         needs=("separate_direct_lobe",),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Direct Anisotropy",
@@ -550,6 +611,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         0.99,
         label="Anisotropy",
         needs=("separate_direct_lobe",),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Direct Roughness Offset",
@@ -562,6 +624,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Roughness Offset",
         needs=(LAMPS_BY_LOBE, "direct_world"),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Direct Roughness Depth Multiplier",
@@ -573,6 +636,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         10.0,
         label="Depth Multiplier",
         needs=(LAMPS_BY_LOBE, "direct_world"),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Direct Roughness Depth Adder",
@@ -585,6 +649,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Depth Adder",
         needs=(LAMPS_BY_LOBE, "direct_world"),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Direct Second Scale",
@@ -597,6 +662,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Second Scale",
         needs=(LAMPS_BY_LOBE,),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Direct Second Roughness Multiplier",
@@ -608,6 +674,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         100.0,
         label="Second Multiplier",
         needs=("direct_second_scale",),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Direct World",
@@ -616,6 +683,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         False,
         "Where the world is seen through the medium, it is as blurred as those highlights are",
         label="Blur World",
+        limit=LOBES,
     ),
     Parameter(
         "Polarize",
@@ -623,6 +691,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "BOOL",
         False,
         "Looks at the first surface through a polarizing filter, which takes away or keeps its reflections",
+        limit=APART,
     ),
     Parameter(
         "Polarization Angle",
@@ -643,6 +712,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "BOOL",
         True,
         "Shows weak reflections inside media. Off is darker and less noisy; total reflection stays",
+        limit=APART,
     ),
     Parameter(
         "Max Interior Reflections",
@@ -654,6 +724,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         0,
         UNLIMITED_REFLECTIONS,
         label="Max Reflections",
+        limit=APART,
     ),
     Parameter(
         "Reflection Probability",
@@ -667,6 +738,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Probability",
         needs=("internal_reflections",),
+        limit=Limit("leave the choice to Cycles, which changes the noise alone", decides=False),
     ),
     Parameter(
         "Energy Cutoff Exponent",
@@ -678,6 +750,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         -20.0,
         0.0,
         label="Energy Cutoff",
+        limit=Limit("give up nothing", alone=True),
     ),
     Parameter(
         "Caustic Refraction",
@@ -686,6 +759,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         True,
         "Bright patterns that light refracted by this medium throws on other surfaces",
         label="Refraction",
+        limit=APART,
     ),
     Parameter(
         "Caustic Reflection",
@@ -694,6 +768,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         True,
         "Bright patterns that light mirrored by the medium's outside throws on other surfaces",
         label="Reflection",
+        limit=APART,
     ),
     Parameter(
         "Caustic Total Reflection",
@@ -702,6 +777,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         True,
         "Bright patterns of light that was reflected totally inside the medium",
         label="Total Reflection",
+        limit=APART,
     ),
     Parameter(
         "Caustic Internal Reflections",
@@ -711,6 +787,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Bright patterns of light that was weakly reflected inside the medium",
         label="Internal Reflections",
         needs=("internal_reflections",),
+        limit=APART,
     ),
     Parameter(
         "Caustic Dispersion",
@@ -720,6 +797,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Splits bright patterns on other surfaces into colours, also those of shadow caustics",
         label="Dispersion",
         needs=("disperse",),
+        limit=Limit("split light that falls on other surfaces, too", alone=True, decides=False),
     ),
     Parameter(
         "Caustic Direct Refraction",
@@ -729,6 +807,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Light of small lamps that direct refraction throws on other surfaces",
         label="Direct Refraction",
         needs=(LAMPS_BY_LOBE,),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Caustic Direct Reflection",
@@ -738,6 +817,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Light of small lamps that direct reflection throws on other surfaces",
         label="Direct Reflection",
         needs=(LAMPS_BY_LOBE,),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Caustic Roughness Offset",
@@ -750,6 +830,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Roughness Offset",
         needs=(LAMPS_BY_LOBE, "direct_world"),
+        limit=LOBE_SHAPES,
     ),
     Parameter(
         "Caustic Max Distance",
@@ -761,6 +842,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         1e6,
         "DISTANCE",
         label="Max Distance",
+        limit=APART,
     ),
     Parameter(
         "Shadow Mode",
@@ -778,6 +860,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         None,
         "Shader that glows wherever two media, or a medium and air, meet",
         label="At Interfaces",
+        limit=GLOW,
     ),
     Parameter(
         "Emission at Entrances",
@@ -786,6 +869,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         None,
         "Shader that glows where rays enter a medium from air",
         label="At Entrances",
+        limit=GLOW,
     ),
     Parameter(
         "Emission at Exits",
@@ -794,6 +878,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         None,
         "Shader that glows where rays leave all media into air",
         label="At Exits",
+        limit=GLOW,
     ),
     Parameter(
         "Spectral Distribution",
@@ -805,6 +890,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "colours",
         label="Light",
         needs=("disperse",),
+        limit=SPECTRUM,
     ),
     Parameter(
         "Spectral Gamut",
@@ -815,6 +901,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         choices=spectra.GAMUTS,
         label="Gamut",
         needs=("disperse",),
+        limit=SPECTRUM,
     ),
     Parameter(
         "Spectral Saturation",
@@ -827,6 +914,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "FACTOR",
         label="Saturation",
         needs=("disperse",),
+        limit=SPECTRUM,
     ),
     Parameter(
         "Clamp Negative",
@@ -836,6 +924,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Cuts off what of split colours lies outside the gamut, which makes them paler; off, negative values "
         "reach the picture and come right in wider colour spaces",
         needs=("disperse",),
+        limit=SPECTRUM,
     ),
 )
 
@@ -863,6 +952,23 @@ def has_effect(parameter: Parameter, values: Mapping[str, Any]) -> bool:
     have any value.
     """
     return not parameter.needs or any(_is_at_work(need, values) for need in parameter.needs)
+
+
+def limits_at_work(values: Mapping[str, Any], version: tuple[int, int, int]) -> dict[Limit, Parameter]:
+    """Return for which parameters, beside the values of others as :func:`has_effect` takes them, a medium needs the shader in a
+    version of Blender: of each limit the first.
+    """
+    found: dict[Limit, Parameter] = {}
+    for parameter in SOCKETS:
+        limit = parameter.limit
+        if limit is None or not limit.decides or limit in found or (limit.before and version >= limit.before):
+            continue
+        neutral = parameter.default if limit.neutral is None else limit.neutral
+        if parameter.keyword in values and values[parameter.keyword] == neutral:
+            continue
+        if has_effect(parameter, values) and (not limit.needs or any(_is_at_work(need, values) for need in limit.needs)):
+            found[limit] = parameter
+    return found
 
 
 def _is_at_work(keyword: str, values: Mapping[str, Any]) -> bool:

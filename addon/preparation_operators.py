@@ -5,8 +5,9 @@ from __future__ import annotations
 import bpy
 
 from .analysis import clear_analysis, is_analysed
-from .compatibility import UnsupportedError
-from .cutting import forget_kept, is_cut, set_cut
+from .backends import choose
+from .compatibility import BACKENDS, UnsupportedError, is_native, set_backend
+from .cutting import forget_kept, is_cut, is_set_to_cut, set_cut
 from .live import keep_cut, update_cut
 from .media import all_objects
 from .polls import has_media, supported
@@ -37,7 +38,11 @@ class Prepare(bpy.types.Operator):
             return {"CANCELLED"}
         for change in preparation.changes or ("Nothing to change",):
             self.report({"INFO"}, change)
-        for line in (*str(preparation.cut).splitlines(), *str(preparation.found).splitlines()):
+        for line in (
+            *str(preparation.chosen).splitlines(),
+            *str(preparation.cut).splitlines(),
+            *str(preparation.found).splitlines(),
+        ):
             self.report({"INFO"}, line)
         for problem in preparation.problems[:MOST_REPORTS]:
             self.report({"WARNING"}, str(problem))
@@ -80,15 +85,49 @@ class CutSurfaces(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
+        if is_native(context.scene):
+            cls.poll_message_set("Always on where Cycles' own nodes render all media, which cannot ask; see Render With")
+            return False
         return supported(cls) and (is_cut(context.scene) or has_media(cls, context))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         scene = context.scene
-        set_cut(scene, not is_cut(scene))
+        set_cut(scene, not is_set_to_cut(scene))
+        found = update_cut(scene)
+        choose(scene)
         if not is_cut(scene):
             self.report({"INFO"}, "Renders show the objects as they are")
             return {"FINISHED"}
-        for line in str(update_cut(scene)).splitlines() or ["Nothing crosses, so nothing is cut"]:
+        for line in str(found).splitlines() or ["Nothing crosses, so nothing is cut"]:
+            self.report({"INFO"}, line)
+        return {"FINISHED"}
+
+
+class RenderWith(bpy.types.Operator):
+    """What renders the media: the shader in Open Shading Language, which does everything and needs the CPU, or Cycles' own
+    nodes, which are faster and render on every device, and do nearly everything
+    """
+
+    bl_idname = "nested_dielectric.render_with"
+    bl_label = "Render With"
+    bl_options = {"REGISTER", "UNDO"}
+
+    backend: bpy.props.EnumProperty(
+        name="Render With",
+        items=[(choice.keyword, choice.name, choice.description) for choice in BACKENDS],
+        options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return supported(cls)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        scene = context.scene
+        set_backend(scene, self.backend)
+        update_cut(scene)
+        chosen = choose(scene)
+        for line in (*str(chosen).splitlines(), chosen.headline or "No media: assign a preset first"):
             self.report({"INFO"}, line)
         return {"FINISHED"}
 
@@ -187,7 +226,9 @@ class ClearAnalysis(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         clear_analysis(context.scene)
+        update_cut(context.scene)
+        choose(context.scene)
         return {"FINISHED"}
 
 
-CLASSES = (Prepare, PutBack, CutSurfaces, KeepCut, ShowProblem, ClearAnalysis)
+CLASSES = (Prepare, PutBack, RenderWith, CutSurfaces, KeepCut, ShowProblem, ClearAnalysis)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 
 import bpy
 
 from .analysis import is_analysed, last_found
-from .compatibility import blender_note, blender_problem
+from .backends import last_chosen
+from .compatibility import BACKENDS, blender_note, blender_problem, get_backend
 from .cutting import is_cut, is_kept, last_cut
 from .drawing import ObjectProperties, Sidebar, draw_alert, draw_text
 from .icons import ready_icon
@@ -19,7 +21,7 @@ from .notices import render_problem
 from .operators import UpdateMaterials
 from .parameters import GROUP_NAME, PRIORITY_PROPERTY
 from .preparation import taken_back
-from .preparation_operators import ClearAnalysis, CutSurfaces, KeepCut, Prepare, PutBack, ShowProblem
+from .preparation_operators import ClearAnalysis, CutSurfaces, KeepCut, Prepare, PutBack, RenderWith, ShowProblem
 from .preset_menus import draw_presets
 from .priorities import in_words
 from .priority_operators import OpenMaterial, PriorityMove, PriorityOwn, SelectObjects, SpaceOut
@@ -31,7 +33,7 @@ OPEN_PROBLEMS = 1
 """Problems whose remedies are shown before they are asked for."""
 
 MOST_LINES = 20
-"""Media that are not cut whose reasons are listed."""
+"""Names whose reasons are listed."""
 
 NAME_WIDTH = 0.68
 """Part of a row that a name takes; the rest holds a priority of four digits at the default width of the sidebar."""
@@ -125,6 +127,7 @@ def draw(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Everything a panel shows, for the Object properties and the 3D view alike."""
     draw_problem(layout, context)
     draw_preparation(layout, context)
+    draw_backend(layout, context)
     draw_cut(layout, context)
     draw_media(layout, context)
     draw_active(layout, context)
@@ -139,7 +142,7 @@ def draw_problem(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     elif not listed_media(context.scene).rows:
         wrong = blender_problem()
         text = f"They would not render here: {wrong}" if wrong else (
-            "Select an object and assign a preset; Prepare Scene then sets what they need, such as Cycles on the CPU"
+            "Select an object and assign a preset; Prepare Scene then sets what they need, such as Cycles and enough bounces"
         )
         draw_text(layout, context, f"No media yet. {text}", "INFO")
     if note:
@@ -219,6 +222,35 @@ def draw_changes(layout: bpy.types.UILayout, context: bpy.types.Context, report:
         draw_text(body, context, line, "DOT")
 
 
+def draw_backend(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """The choice of what renders the media, and which materials are left to the shader and why."""
+    scene = context.scene
+    if not listed_media(scene).rows:
+        return
+    backend = get_backend(scene)
+    name = next(choice.name for choice in BACKENDS if choice.keyword == backend)
+    layout.operator_menu_enum(RenderWith.bl_idname, "backend", text=f"Render With: {name}")
+    chosen = last_chosen(scene)
+    if chosen is None or not chosen.headline:
+        return
+    if not chosen.osl:
+        draw_text(layout, context, chosen.headline, "INFO")
+        return
+    header, body = layout.panel("nested_dielectric_backends", default_closed=True)
+    header.label(text=chosen.headline, icon="INFO")
+    if body is not None:
+        _draw_reasons(body, context, chosen.osl)
+
+
+def _draw_reasons(layout: bpy.types.UILayout, context: bpy.types.Context, reasons: Sequence[tuple[str, str]]) -> None:
+    """Names, each with a button that shows what has it, and reasons; of very many the first."""
+    for name, reason in reasons[:MOST_LINES]:
+        layout.row().operator(ShowProblem.bl_idname, text=name, icon="VIEWZOOM").name = name
+        draw_text(layout, context, reason, "DOT")
+    if len(reasons) > MOST_LINES:
+        layout.label(text=f"And {len(reasons) - MOST_LINES} more", icon="BLANK1")
+
+
 def draw_cut(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """The switch of whether surfaces are cut in renders, and what cannot be and why."""
     scene = context.scene
@@ -234,12 +266,8 @@ def draw_cut(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         return
     header, body = layout.panel("nested_dielectric_uncut", default_closed=True)
     header.label(text=f"{len(found.asking)} of {len(found.asking) + len(found.media)} Not Cut", icon="INFO")
-    for name, reason in found.asking[:MOST_LINES] if body is not None else ():
-        row = body.row()
-        row.operator(ShowProblem.bl_idname, text=name, icon="VIEWZOOM").name = name
-        draw_text(body, context, reason, "DOT")
-    if body is not None and len(found.asking) > MOST_LINES:
-        body.label(text=f"And {len(found.asking) - MOST_LINES} more", icon="BLANK1")
+    if body is not None:
+        _draw_reasons(body, context, found.asking)
 
 
 def draw_media(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

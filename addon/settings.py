@@ -24,6 +24,8 @@ and 0.08 % at 256.
 """
 
 ENGINE = "render.engine"
+DEVICE = "cycles.device"
+OSL_SWITCH = "cycles.shading_system"
 MOTION_BLUR = "render.use_motion_blur"
 SHUTTER = "render.motion_blur_shutter"
 SHUTTER_CURVE = "render.motion_blur_shutter_curve"
@@ -34,8 +36,8 @@ RANDOM_TIME = (MOTION_BLUR, SHUTTER, SHUTTER_CURVE, ROLLING_SHUTTER)
 
 LABELS = {
     ENGINE: "Render Engine",
-    "cycles.shading_system": "Open Shading Language",
-    "cycles.device": "Device",
+    OSL_SWITCH: "Open Shading Language",
+    DEVICE: "Device",
     MOTION_BLUR: "Motion Blur",
     SHUTTER: "Shutter",
     SHUTTER_CURVE: "Shutter Curve",

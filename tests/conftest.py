@@ -32,9 +32,10 @@ def renders_nothing(request):
 
     renders = []
     watch = bpy.app.handlers.persistent(lambda *_: renders.append(request.node.name))
-    bpy.app.handlers.render_init.append(watch)
+    # Of all handlers of renders the one that is not taken for a script that may change the scene.
+    bpy.app.handlers.render_stats.append(watch)
     yield
-    bpy.app.handlers.render_init.remove(watch)
+    bpy.app.handlers.render_stats.remove(watch)
     assert not renders
 
 

@@ -57,6 +57,14 @@ def test_prepare_saves_the_file_and_a_second_time_has_nothing_to_do(file):
     assert done.returncode == 0 and "nothing to change" in done.stdout
 
 
+def test_prepare_keeps_in_the_file_what_media_are_rendered_with(file, tmp_path):
+    done = run("prepare", file, "--backend", "native", "-o", tmp_path / "native.blend")
+    assert done.returncode == 0 and "rendered: by Cycles' own nodes: 'Glass'" in done.stdout
+    assert "rendered: by Cycles' own nodes" in run("prepare", tmp_path / "native.blend").stdout
+    assert "rendered: by OSL: 'Glass'" in run("prepare", tmp_path / "native.blend", "--backend", "osl").stdout
+    assert run("prepare", file, "--backend", "cuda").returncode == 2
+
+
 def test_presets_are_listed():
     done = run("presets")
     assert done.returncode == 0

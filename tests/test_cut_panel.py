@@ -31,6 +31,12 @@ def add_view():
     add_camera((2.1, -4.3, 1.7), (0, 0, 0))
 
 
+@pytest.fixture
+def registered(registered):
+    """The same where media may ask: with Open Shading Language."""
+    bpy.context.scene.cycles.shading_system = True
+
+
 @pytest.mark.quick
 def test_a_button_switches_it_on_and_off_and_shows_which(registered, draw):
     scene = bpy.context.scene

@@ -25,7 +25,7 @@ def scene():
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "BLENDER_EEVEE"
-    scene.cycles.device = "GPU"
+    scene.cycles.device = "CPU"
     scene.cycles.shading_system = False
     for path in settings.AT_LEAST:
         setattr(scene.cycles, path.removeprefix("cycles."), 3)
@@ -134,7 +134,8 @@ def test_put_back_restores_everything_to_the_bit(scene):
 
 def test_put_back_leaves_what_the_artist_has_changed_since(scene):
     ball(disperse=True)
-    nd.prepare(scene)
+    scene.cycles.device = "GPU"
+    nd.prepare(scene, backend="OSL")
     scene.cycles.max_bounces = 100
     scene.cycles.device = "GPU"
     scene.cycles.rolling_shutter_type = "TOP"

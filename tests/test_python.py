@@ -132,7 +132,7 @@ def test_preparing_says_what_it_changed_and_a_second_time_changes_nothing():
     scene.cycles.shading_system = False
     scene.cycles.max_bounces = 12
     scene.cycles.transparent_max_bounces = 1000
-    preparation = nd.prepare(scene)
+    preparation = nd.prepare(scene, backend="OSL")
     assert "Open Shading Language: off -> on" in str(preparation)
     assert scene.cycles.max_bounces == 64
     assert scene.cycles.transparent_max_bounces == 1000

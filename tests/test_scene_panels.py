@@ -264,10 +264,10 @@ def test_the_panel_says_ready_until_settings_or_media_change(draw, panel, scene)
     assert "Ready to Render As of the last Prepare" in labels and "nested_dielectric.put_back" in buttons
     assert "Render Engine: EEVEE -> Cycles" in labels and "Max Bounces: 12 -> 64" in labels
     assert "Media are told what surrounds them" in labels and " Changes " in labels
-    scene.cycles.device = "GPU"
+    scene.render.engine = "BLENDER_WORKBENCH"
     drawn = draw(panel)
     assert "Ready" not in labels_and_operators(drawn)[0] and alerts(drawn)
-    scene.cycles.device = "CPU"
+    scene.render.engine = "CYCLES"
     assert "Ready" in labels_and_operators(draw(panel))[0]
     add_media(Ice=20)
     assert "Media have come or gone since the last Prepare" in labels_and_operators(draw(panel))[0]
@@ -285,7 +285,7 @@ def test_problems_stay_to_be_read_each_with_a_button_and_its_remedy(draw, panel)
     assert {f"Sheet {index}" for index in range(5)} <= buttons.keys()
     assert labels.count("Is not closed") == 5 and labels.count("recalculate its normals") == 5
     closed = [keywords["default_closed"] for name, _, keywords in drawn if name == "panel"]
-    assert closed == [False] + [True] * 5  # the last is what has been changed
+    assert closed == [False] + [True] * 6  # the last are what has been changed, and what renders
     # Whatever has happened since.
     bpy.data.objects.remove(bpy.data.objects["Sheet 0"])
     assert "5 Problems at the Last Prepare" in texts(draw(panel))[0]
@@ -381,7 +381,7 @@ def test_a_problem_of_a_material_selects_its_objects_and_of_nothing_says_so(capf
 
 def test_what_keeps_media_from_showing_is_named(scene):
     add_media(Water=30)
-    nd.prepare(scene)
+    nd.prepare(scene, backend="OSL")
     assert notices.render_problem(scene) is None
     inputs = bpy.data.materials["Water"].node_tree.nodes["Nested Dielectric"].inputs
     for setting, value, other, words in (

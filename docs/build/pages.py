@@ -6,7 +6,7 @@ from itertools import groupby
 from pathlib import Path
 
 from nested_dielectric import spectra
-from nested_dielectric.parameters import PARAMETERS, Parameter
+from nested_dielectric.parameters import PARAMETERS, Limit, Parameter
 from nested_dielectric.presets import Preset, all_presets
 
 FOLDER = Path(__file__).resolve().parent.parent
@@ -20,6 +20,9 @@ Made from the code by `make docs`. The five that artists change first are on the
 
 *Keyword* is the name in [Python](python.md) and in preset files. In Python, choices are the upper-case words. Values are
 those of a new node; [presets](presets.md) bring their own.
+
+*Rendered by* says which of a material's two bodies has it: the shader in OSL, Cycles' own nodes, or both
+([Render With](speed.md#render-with)).
 """
 
 SPECTRUM_NOTE = """\
@@ -52,7 +55,7 @@ def parameters_page() -> str:
     parts = [PARAMETERS_INTRODUCTION]
     for panel in dict.fromkeys(parameter.panel for parameter in PARAMETERS):
         members = [parameter for parameter in PARAMETERS if parameter.panel == panel]
-        rows = [("Parameter", "Keyword", "Default", "Values", "What it does"), *map(_parameter_row, members)]
+        rows = [("Parameter", "Keyword", "Default", "Values", "What it does", "Rendered by"), *map(_parameter_row, members)]
         parts += [f"## {panel}\n", _table(rows), *_choices(members)]
     words = ", ".join(f"`{choice.keyword}` ({choice.description})" for choice in spectra.DISTRIBUTIONS)
     return "\n".join((*parts, SPECTRUM_NOTE.format(words=words)))
@@ -61,7 +64,15 @@ def parameters_page() -> str:
 def _parameter_row(parameter: Parameter) -> tuple[str, ...]:
     label = parameter.label
     name = f"**{parameter.name}**" + (f" (*{label}* on the panel)" if label else "")
-    return name, f"`{parameter.keyword}`", _default(parameter), _values(parameter), parameter.description
+    cells = _default(parameter), _values(parameter), parameter.description, _bodies(parameter.limit)
+    return name, f"`{parameter.keyword}`", *cells
+
+
+def _bodies(limit: Limit | None) -> str:
+    """Which bodies of the material have a parameter, and what Cycles' own nodes do otherwise."""
+    if limit is None:
+        return "Both"
+    return f"{'OSL alone' if limit.alone else 'Both'}; Cycles' own nodes {limit.text}"
 
 
 def _default(parameter: Parameter) -> str:
