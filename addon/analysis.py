@@ -26,7 +26,8 @@ from .contacts import PROBE, Body, Contact, Memory, Solid
 from .foreign import is_clear, is_seen_by_all, lamp_box, sends_light_on
 from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
-from .materials import absorption_coefficients, dielectric_node, has_own_volume, unchanged_nodes
+from .lookups import unchanged_nodes
+from .materials import absorption_coefficients, dielectric_node, has_own_volume
 from .media import SOLID_TYPES, is_cut_surface, is_rendered, material_priority, media, own_priority
 from .node_group import (
     AIR_AROUND,

@@ -13,6 +13,7 @@ import bpy
 from . import analysis, cutting
 from .identity import NO_SCENE, known_number
 from .lights import update_lights
+from .lookups import unchanged_nodes
 from .trees import mend_nodes
 
 REST = 0.3
@@ -171,6 +172,7 @@ def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph)
     _trust(scene)
 
 
+@unchanged_nodes()
 def mend_nodes_of(changed: Iterable[bpy.types.ID]) -> None:
     """Let media read what artists have plugged in since, in materials and groups that have changed."""
     if any(isinstance(data, bpy.types.ShaderNodeTree) and not data.is_embedded_data for data in changed):

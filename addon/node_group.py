@@ -16,6 +16,7 @@ from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
 from .contacts import PROBE
 from .dispersion import mean_cauchy_distances
 from .identity import NO_SCENE, SCENE_PROPERTY
+from .lookups import looked_up_once
 from .parameters import (
     BASIC_KEYWORDS,
     BASICS,
@@ -233,6 +234,7 @@ def find_group() -> bpy.types.NodeTree | None:
     return next((tree for tree in groups if group_version(tree) == MATERIAL_VERSION), None)
 
 
+@looked_up_once
 def group_version(tree: bpy.types.NodeTree | None) -> int | None:
     """Return which version of the material a group is, :data:`DAMAGED` if others have taken from it what it needs, or
     None if it is another group.
