@@ -13,6 +13,7 @@ that no script changes the scene (:mod:`nested_dielectric.live`): elsewhere the 
 from __future__ import annotations
 
 import hashlib
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple, dataclass, field, replace
 from functools import cache, cached_property
@@ -48,6 +49,7 @@ from .node_group import (
     SURROUNDINGS_COLOR_SOCKET,
     SURROUNDINGS_SOCKET,
     VOLUME_OUTPUT,
+    follow_frames,
     has_analysis,
     is_offset_group,
 )
@@ -229,6 +231,8 @@ def trust(scene: bpy.types.Scene, every_frame: bool) -> None:
     validity = _validity(scene)
     frame = _frame(scene) if validity.every_frame else validity.frame
     _set_validity(scene, _Validity(validity.holds, frame, float(every_frame)))
+    analysed = [each for each in bpy.data.scenes if is_analysed(each) and each.library is None]
+    follow_frames(not all(_validity(each).every_frame for each in analysed))
 
 
 def distrust(scene: bpy.types.Scene) -> None:
@@ -996,9 +1000,9 @@ def _common(outsides: Iterable[Outside]) -> Outside | None:
 
 
 def _most_slots() -> dict[bpy.types.Material, int]:
-    """Of all objects of each material; many where modifiers may make more."""
+    """Of all objects of each material; many where modifiers may make more. A cut surface has the slots of its medium."""
     most: dict[bpy.types.Material, int] = {}
-    for obj in bpy.data.objects:
+    for obj in itertools.filterfalse(is_cut_surface, bpy.data.objects):
         count = len(obj.material_slots)
         if any(modifier.type in ("NODES", "BOOLEAN") and not keeps_mesh(modifier) for modifier in obj.modifiers):
             count = MATERIAL_SLOTS

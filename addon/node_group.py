@@ -134,6 +134,10 @@ SHADER_NODE = "Nested Dielectric Shader"
 TABLES_NODE = "Spectral Tables"
 COORDINATE_NODE = "Spectral Coordinate"
 ROW_OUTPUT = "Row"
+FRAME_NODE = "Frame"
+FRAME_PATH, TIMED_FRAME_PATH = "frame_float", "frame_current"
+"""Both are the number of the frame; by the other one the depsgraph knows that a material depends on it."""
+
 DISPERSER_NODE = "Cycles Dispersion"
 
 LEAST_PREVIEW_IOR = 1.2
@@ -685,15 +689,28 @@ def _analysed_scene(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
     tree.links.new(view_layer_attribute(tree, f'["{ANALYSED}"]').outputs["Color"], validity.inputs[0])
     analysed, frame, every_frame = validity.outputs
     frame_now, blurs, shutter, simplified = (
-        view_layer_attribute(tree, path).outputs["Fac"]
-        for path in ("frame_current", "render.use_motion_blur", "render.motion_blur_shutter", "render.use_simplify")
+        view_layer_attribute(tree, path)
+        for path in (FRAME_PATH, "render.use_motion_blur", "render.motion_blur_shutter", "render.use_simplify")
     )
+    frame_now.name = FRAME_NODE
+    frame_now, blurs, shutter, simplified = (node.outputs["Fac"] for node in (frame_now, blurs, shutter, simplified))
     this_frame = math("COMPARE", frame_now, frame, 0.5)
     still = math("LESS_THAN", math("MULTIPLY", blurs, shutter), 1e-6)
     moment = math("MAXIMUM", every_frame, math("MULTIPLY", this_frame, still))
     shapes = math("SUBTRACT", analysed, simplified)
     holds = math("GREATER_THAN", math("MULTIPLY", moment, shapes), 0.5)
     return math("SUBTRACT", math("MULTIPLY", holds, math("ADD", number, 1.0)), 1.0)
+
+
+def follow_frames(follow: bool) -> None:
+    """Let materials be evaluated anew on each frame, with all objects that have them, because what they are told may not hold
+    there; or not.
+    """
+    path = TIMED_FRAME_PATH if follow else FRAME_PATH
+    for tree in bpy.data.node_groups:
+        if tree.get(VERSION_PROPERTY) == MATERIAL_VERSION and tree.is_editable and (node := tree.nodes.get(FRAME_NODE)):
+            if node.attribute_name in (FRAME_PATH, TIMED_FRAME_PATH) and node.attribute_name != path:
+                node.attribute_name = path
 
 
 def _takes_front_ior(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:

@@ -32,6 +32,7 @@ def renders_nothing(request):
 
     renders = []
     watch = bpy.app.handlers.persistent(lambda *_: renders.append(request.node.name))
+    watch.__module__ = "nested_dielectric.tests"  # or all media are looked at whenever another's script may have changed them
     bpy.app.handlers.render_init.append(watch)
     yield
     bpy.app.handlers.render_init.remove(watch)
