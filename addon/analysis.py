@@ -13,6 +13,7 @@ that no script changes the scene (:mod:`nested_dielectric.live`): elsewhere the 
 from __future__ import annotations
 
 import hashlib
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import astuple, dataclass, field, replace
 from functools import cache, cached_property
@@ -26,7 +27,8 @@ from .contacts import PROBE, Body, Contact, Memory, Solid
 from .foreign import is_clear, is_seen_by_all, lamp_box, sends_light_on
 from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
-from .materials import absorption_coefficients, dielectric_node, has_own_volume, unchanged_nodes
+from .lookups import unchanged_nodes
+from .materials import absorption_coefficients, dielectric_node, has_own_volume
 from .media import SOLID_TYPES, is_cut_surface, is_rendered, material_priority, media, own_priority
 from .native_nodes import CENTRE, LARGEST_EXPONENT
 from .node_group import (
@@ -49,6 +51,7 @@ from .node_group import (
     SURROUNDINGS_COLOR_SOCKET,
     SURROUNDINGS_SOCKET,
     VOLUME_OUTPUT,
+    follow_frames,
     has_analysis,
     is_offset_group,
 )
@@ -232,6 +235,8 @@ def trust(scene: bpy.types.Scene, every_frame: bool) -> None:
     validity = _validity(scene)
     frame = _frame(scene) if validity.every_frame else validity.frame
     _set_validity(scene, _Validity(validity.holds, frame, float(every_frame)))
+    analysed = [each for each in bpy.data.scenes if is_analysed(each) and each.library is None]
+    follow_frames(not all(_validity(each).every_frame for each in analysed))
 
 
 def distrust(scene: bpy.types.Scene) -> None:
@@ -1019,11 +1024,9 @@ def _common(outsides: Iterable[Outside]) -> Outside | None:
 
 
 def _most_slots() -> dict[bpy.types.Material, int]:
-    """Of all objects of each material; many where modifiers may make more."""
+    """Of all objects of each material; many where modifiers may make more. A cut surface has the slots of its medium."""
     most: dict[bpy.types.Material, int] = {}
-    for obj in bpy.data.objects:
-        if is_cut_surface(obj):
-            continue  # whose slots are its medium's
+    for obj in itertools.filterfalse(is_cut_surface, bpy.data.objects):
         count = len(obj.material_slots)
         if any(modifier.type in ("NODES", "BOOLEAN") and not keeps_mesh(modifier) for modifier in obj.modifiers):
             count = MATERIAL_SLOTS

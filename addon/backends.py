@@ -25,7 +25,8 @@ from .cutting_plan import Cut, components, may_absorb, touching_media
 from .dispersion import abbe_deviation
 from .identity import known_number
 from .lights import carried_lamps
-from .materials import dielectrics, get_parameter, may_disperse, rendered_node, unchanged_nodes
+from .lookups import unchanged_nodes
+from .materials import dielectrics, get_parameter, may_disperse, rendered_node
 from .media import dispersing_materials, is_rendered, media
 from .node_group import (
     BY_OBJECT,

@@ -17,15 +17,14 @@ from .animation import curves
 from .foreign import is_clear, lamp_box, sends_light_on
 from .identity import known_number
 from .lights import carried_lamps, lamps, light_carriers, listed_lamps
+from .lookups import looked_up_once, unchanged_nodes
 from .materials import (
     absorption_coefficients,
     dielectric_node,
     dielectrics,
     has_own_volume,
-    looked_up_once,
     may_disperse,
     medium_material,
-    unchanged_nodes,
 )
 from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media, own_priority
 from .node_group import BY_VOLUME_SOCKET, MASK_OUTPUT, MATERIAL_SLOTS

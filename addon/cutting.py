@@ -16,6 +16,7 @@ import numpy as np
 
 from . import analysis
 from .animation import curves
+from .changes import plain
 from .compatibility import is_native
 from .cutting_nodes import (
     BODY_INPUT,
@@ -23,10 +24,11 @@ from .cutting_nodes import (
     CUT_INPUT,
     END_INPUT,
     FRAME_INPUT,
-    KEPT_INPUT,
     OWN_INPUT,
     PART,
+    SURFACE_INPUTS,
     Plan,
+    ensure_kept_tree,
     ensure_part_tree,
     ensure_surface_tree,
     make_cut_tree,
@@ -193,7 +195,8 @@ def keep_in_file(scene: bpy.types.Scene, scripted: bool = False) -> str:
         mesh.use_auto_texspace = False
         mesh.texspace_location, mesh.texspace_size = evaluated.data.texspace_location, evaluated.data.texspace_size
         _exchange_mesh(surface, mesh)
-        _set_inputs(surface.modifiers[0], {KEPT_INPUT: True, FRAME_INPUT: scene.frame_current})
+        _exchange_tree(surface.modifiers[0], ensure_kept_tree())
+        _set_inputs(surface.modifiers[0], {FRAME_INPUT: scene.frame_current})
         surface.hide_viewport = True
     _holder(scene)[KEPT] = _state(scene, plan)
     return ""
@@ -209,7 +212,7 @@ def forget_kept(scene: bpy.types.Scene) -> bool:
     """Cut every frame as it is rendered; return whether one was kept."""
     was_kept = is_kept(scene)
     for obj, surface in _surfaces(scene).items() if was_kept else ():
-        _set_inputs(surface.modifiers[0], {KEPT_INPUT: False})
+        _exchange_tree(surface.modifiers[0], ensure_surface_tree())
         _exchange_mesh(surface, bpy.data.meshes.new(surface.name))
         _liken(surface, obj)
     if was_kept:
@@ -256,6 +259,13 @@ def _holder(scene: bpy.types.Scene) -> bpy.types.Object | None:
 def _exchange_mesh(surface: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
     before, surface.data = surface.data, mesh
     bpy.data.meshes.remove(before)
+
+
+def _exchange_tree(modifier: bpy.types.NodesModifier, tree: bpy.types.NodeTree) -> None:
+    values = {name: _input_of(modifier, name).value for name in SURFACE_INPUTS}
+    before, modifier.node_group = modifier.node_group, tree
+    _set_inputs(modifier, values)
+    _remove_tree(before)
 
 
 def show_strays() -> None:
@@ -489,11 +499,11 @@ def _liken(surface: bpy.types.Object, obj: bpy.types.Object) -> None:
         if own.link != slot.link or own.material != slot.material:
             own.link = slot.link
             own.material = slot.material
-    own = {key: _plain(obj[key]) for key in obj.keys() if key != HIDDEN_BY_CUT}
+    own = {key: plain(obj[key]) for key in obj.keys() if key != HIDDEN_BY_CUT}
     for key in surface.keys() - own.keys() - {CUT_OF}:
         del surface[key]
     for key, value in own.items():
-        if key not in surface or _plain(surface[key]) != value:
+        if key not in surface or plain(surface[key]) != value:
             surface[key] = value
     for path in animated:
         if path in ALIKE or path.startswith('["'):
@@ -501,13 +511,6 @@ def _liken(surface: bpy.types.Object, obj: bpy.types.Object) -> None:
     for linking in ("receiver_collection", "blocker_collection"):
         if getattr(surface.light_linking, linking) != getattr(obj.light_linking, linking):
             setattr(surface.light_linking, linking, getattr(obj.light_linking, linking))
-
-
-def _plain(value):
-    """What a custom property holds, to be compared and copied."""
-    if hasattr(value, "to_dict"):
-        return value.to_dict()
-    return value.to_list() if hasattr(value, "to_list") else value
 
 
 def _follow(surface: bpy.types.Object, obj: bpy.types.Object, path: str) -> None:

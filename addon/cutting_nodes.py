@@ -51,12 +51,13 @@ PART = 32
 
 PART_GROUP = "Nested Dielectric Cut Part"
 SURFACE_GROUP = "Nested Dielectric Cut Surface"
+KEPT_GROUP = "Nested Dielectric Cut Kept"
 BODY_GROUP = "Nested Dielectric Cut Body"
 CUT_GROUP = "Nested Dielectric Cut"
 
 OWN_INPUT, CUT_INPUT, BODY_INPUT, END_INPUT = "Medium", "Cut", "Body", "End"
-KEPT_INPUT, FRAME_INPUT = "Kept", "Frame"
-"""Whether the object's own mesh is its surface as it is on a frame, and on which."""
+FRAME_INPUT = "Frame"
+"""On which the object's own mesh is its surface."""
 
 VALUES = {
     "IOR": "NodeSocketFloat",
@@ -285,6 +286,9 @@ def _find_tree(name: str) -> bpy.types.NodeTree | None:
 GEOMETRY = {"Geometry": "NodeSocketGeometry"}
 
 
+SURFACE_INPUTS = {OWN_INPUT: "NodeSocketObject", CUT_INPUT: "NodeSocketObject", BODY_INPUT: "NodeSocketInt"}
+
+
 def ensure_surface_tree() -> bpy.types.NodeTree:
     """Return the group by which an object shows one medium's faces of the cut.
 
@@ -293,13 +297,7 @@ def ensure_surface_tree() -> bpy.types.NodeTree:
     tree = _find_tree(SURFACE_GROUP)
     if tree is not None:
         return tree
-    inputs = GEOMETRY | {
-        OWN_INPUT: "NodeSocketObject",
-        CUT_INPUT: "NodeSocketObject",
-        BODY_INPUT: "NodeSocketInt",
-        KEPT_INPUT: "NodeSocketBool",
-        FRAME_INPUT: "NodeSocketInt",
-    }
+    inputs = GEOMETRY | SURFACE_INPUTS
     tree = _new_tree(SURFACE_GROUP, inputs, GEOMETRY, "A medium's surface as far as it exists, cut where others cross it")
     tree.is_modifier = True
     build = _Builder(tree)
@@ -311,13 +309,31 @@ def ensure_surface_tree() -> bpy.types.NodeTree:
     faces = build.node("GeometryNodeRealizeInstances", Geometry=picked).outputs[0]
     shown = build.joined([first.outputs["Selection"], _as_outside_in(build, cut, faces)])
     smooth = build.count(shown, "FACE", build.tree.nodes.new("GeometryNodeInputShadeSmooth").outputs[0])
-    shown = build.switch(build.compare(smooth, "GREATER_THAN", 0.5, "FLOAT"), shown, _with_normals(build, shown, cut))
+    build.returns(
+        Geometry=build.switch(build.compare(smooth, "GREATER_THAN", 0.5, "FLOAT"), shown, _with_normals(build, shown, cut))
+    )
+    return tree
+
+
+def ensure_kept_tree() -> bpy.types.NodeTree:
+    """Return the group by which an object shows its own mesh on one frame, and on others what :func:`ensure_surface_tree` does.
+
+    It is another group because whatever asks for the frame is evaluated anew, and taken for another mesh, in every render.
+    """
+    tree = _find_tree(KEPT_GROUP)
+    if tree is not None:
+        return tree
+    inputs = GEOMETRY | SURFACE_INPUTS | {FRAME_INPUT: "NodeSocketInt"}
+    tree = _new_tree(KEPT_GROUP, inputs, GEOMETRY, "A medium's surface, cut where others cross it, that is kept for one frame")
+    tree.is_modifier = True
+    build = _Builder(tree)
+    sockets = {name: build.inputs.outputs[name] for name in (*GEOMETRY, *SURFACE_INPUTS)}
+    shown = build.node("GeometryNodeGroup", properties={"node_tree": ensure_surface_tree()}, **sockets).outputs[0]
     frame = _output(build.tree.nodes.new("GeometryNodeInputSceneTime"), "Frame")
     then = build.node("FunctionNodeCompare", properties={"data_type": "FLOAT", "operation": "EQUAL"}, A=frame)
     build.put(_input(then, "B"), build.inputs.outputs[FRAME_INPUT])
     _input(then, "Epsilon").default_value = 1e-3
-    kept = build.all_of((build.inputs.outputs[KEPT_INPUT], then.outputs[0]))
-    build.returns(Geometry=build.switch(kept, shown, build.inputs.outputs["Geometry"]))
+    build.returns(Geometry=build.switch(then.outputs[0], shown, build.inputs.outputs["Geometry"]))
     return tree
 
 

@@ -16,7 +16,8 @@ from .contacts import AIR, MEDIUM, NEVER
 from .cutting_nodes import HIDDEN, Layer, Plan
 from .foreign import lamp_box
 from .lights import lamps
-from .materials import dielectric_node, dielectrics, medium_material, unchanged_nodes
+from .lookups import unchanged_nodes
+from .materials import dielectric_node, dielectrics, medium_material
 from .media import get_priority, is_cut_surface, is_rendered, media
 from .node_group import has_analysis
 from .parameters import PRIORITY_PROPERTY

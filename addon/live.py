@@ -7,16 +7,26 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 
 import bpy
 
-from . import analysis, backends, cutting
+from . import analysis, backends, changes, cutting
 from .identity import NO_SCENE, known_number
 from .lights import update_lights
+from .lookups import unchanged_nodes
 from .trees import mend_nodes
 
 REST = 0.3
 """Seconds without a change after which a scene in a window is analysed."""
+
+ANALYSIS, CUTTING, BODIES = "analysis", "cutting", "bodies"
+
+_done: dict[int, tuple[changes.State, set[str]]] = {}
+"""What scenes were like when something was last done for them and what that was, by the session's numbers of the scenes."""
+
+_follows = True
+"""Whether handlers look at what an update changes."""
 
 
 def analyse(scene: bpy.types.Scene) -> analysis.Found:
@@ -27,6 +37,30 @@ def analyse(scene: bpy.types.Scene) -> analysis.Found:
     """
     install()
     return _analyse(scene)
+
+
+@contextmanager
+def _writing(scene: bpy.types.Scene, looks: bool) -> Iterator[set[str]]:
+    """Yield what has been done for a scene since it was last changed, to be added to. What is written in the block is no change.
+
+    Where others' scripts may change the scene at any time, nothing has been done.
+
+    :param looks: the block looks at the scene itself if it was changed, so that no handler has to.
+    """
+    global _follows
+    outer, _follows = _follows, not looks
+    try:
+        scene.view_layers[0].update()
+        _follows = False
+        before, done = _done.get(scene.session_uid, (None, set()))
+        if before != changes.state_of(scene) or any(frame_scripts()) or any(update_scripts()):
+            done = set()
+        with changes.uncounted():
+            yield done
+            scene.view_layers[0].update()
+        _done[scene.session_uid] = changes.state_of(scene), done
+    finally:
+        _follows = outer
 
 
 def install() -> None:
@@ -41,6 +75,7 @@ def remove() -> None:
     for handlers, handler in _handlers():
         while handler in handlers:
             handlers.remove(handler)
+    _done.clear()
     stop_timer()
 
 
@@ -62,16 +97,32 @@ def _handlers() -> tuple[tuple[list, Callable], ...]:
 
 def frame_scripts() -> Iterator[Callable]:
     """Yield others' handlers that may change a scene on every frame."""
+    return _scripts("frame_change_pre", "frame_change_post", "render_pre", "render_init")
+
+
+def update_scripts() -> Iterator[Callable]:
+    """Yield others' handlers that may change a scene whenever anything changes."""
+    return _scripts("depsgraph_update_pre", "depsgraph_update_post")
+
+
+def _scripts(*names: str) -> Iterator[Callable]:
     ours = analyse_before_render.__module__.rpartition(".")[0]
-    for name in ("frame_change_pre", "frame_change_post", "render_pre", "render_init"):
+    for name in names:
         for handler in getattr(bpy.app.handlers, name):
             if not getattr(handler, "__module__", "").startswith(ours):
                 yield handler
 
 
 def _analyse(scene: bpy.types.Scene) -> analysis.Found:
+    with _writing(scene, looks=True) as done:
+        return _look(scene, done)
+
+
+def _look(scene: bpy.types.Scene, done: set[str]) -> analysis.Found:
+    mend_nodes_of(bpy.data.materials)
     found = analysis.analyse(scene)
     _trust(scene)
+    done.add(ANALYSIS)
     return found
 
 
@@ -97,7 +148,14 @@ def update_cut(scene: bpy.types.Scene) -> cutting.Cut:
         cutting.end_cut(scene)
         return cutting.Cut()
     install()
-    return cutting.cut_surfaces(scene, scripted=any(frame_scripts()))
+    with _writing(scene, looks=False) as done:
+        return _update_cut(scene, done)
+
+
+def _update_cut(scene: bpy.types.Scene, done: set[str]) -> cutting.Cut:
+    found = cutting.cut_surfaces(scene, scripted=any(frame_scripts()))
+    done.add(CUTTING)
+    return found
 
 
 def keep_cut(scene: bpy.types.Scene) -> str:
@@ -133,15 +191,19 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
     """Make sure that the media know what surrounds them now, and the lamps that their lobes carry. In a window updates have
     been followed.
     """
-    if not in_main_thread():
+    is_numbered, is_analysed, is_cut = known_number(scene) != NO_SCENE, analysis.is_analysed(scene), cutting.is_cut(scene)
+    if not in_main_thread() or not (is_numbered or is_analysed or is_cut):
         return
-    if known_number(scene) != NO_SCENE:
-        update_lights(scene)
-    if analysis.is_analysed(scene):
-        mend_nodes_of(bpy.data.materials)
-        _analyse(scene)
-    update_cut(scene)
-    backends.choose(scene)
+    with _writing(scene, looks=True) as done:
+        if is_numbered:
+            update_lights(scene)
+        if is_analysed and ANALYSIS not in done:
+            _look(scene, done)
+        if is_cut and CUTTING not in done:
+            _update_cut(scene, done)
+        if BODIES not in done:
+            backends.choose(scene)
+            done.add(BODIES)
 
 
 @bpy.app.handlers.persistent
@@ -154,13 +216,15 @@ def come_last(*_: object) -> None:
 
 
 @bpy.app.handlers.persistent
-def analyse_after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
+def analyse_after_frame_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Follow what scripts change on a frame, of which no update tells. Between frames, where only motion blur looks, nothing
     may be told anew.
 
     The scene is looked at as the viewport evaluates it: to update the render's own evaluation here would hide from Cycles
     what has changed.
     """
+    if depsgraph is not None and depsgraph.mode == "VIEWPORT":
+        changes.count(depsgraph)
     if not analysis.is_analysed(scene) or scene.frame_subframe != 0.0 or not in_main_thread():
         return
     if not any(frame_scripts()):
@@ -176,11 +240,14 @@ def analyse_after_frame_change(scene: bpy.types.Scene, *_: object) -> None:
 @bpy.app.handlers.persistent
 def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Follow what moves, changes, comes and goes. In a window nothing is to wait while the mouse drags it."""
+    changes.count(depsgraph)
     if has_window() and cutting.concerns(scene, depsgraph):
         _wait_for_rest()
     if not analysis.is_analysed(scene):
         return
     mend_nodes_of({update.id.original for update in depsgraph.updates})
+    if not _follows:
+        return
     if not has_window():
         analysis.follow(scene, depsgraph)
     elif _follow_or_distrust(scene, depsgraph):
@@ -188,6 +255,7 @@ def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph)
     _trust(scene)
 
 
+@unchanged_nodes()
 def mend_nodes_of(changed: Iterable[bpy.types.ID]) -> None:
     """Let media read what artists have plugged in since, in materials and groups that have changed."""
     if any(isinstance(data, bpy.types.ShaderNodeTree) and not data.is_embedded_data for data in changed):
@@ -238,7 +306,7 @@ def is_at_work() -> bool:
 @bpy.app.handlers.persistent
 def distrust_loaded(*_: object) -> None:
     """Believe nothing that a file tells: it may have been changed without the extension. Nobody waits for a look at it."""
-    analysis.forget_shapes()
+    forget_shapes()
     for scene in _analysed_scenes():
         _distrust(scene)
     if has_window() and (_analysed_scenes() or _cut_scenes()):
@@ -277,3 +345,4 @@ def widen_after_save(*_: object) -> None:
 def forget_shapes(*_: object) -> None:
     """Undoing changes meshes without an update that names them."""
     analysis.forget_shapes()
+    _done.clear()

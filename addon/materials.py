@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from functools import wraps
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import bpy
@@ -14,6 +12,7 @@ import numpy as np
 from . import node_group
 from .animation import curves, is_animated
 from .dispersion import LINE_D, sellmeier_ior
+from .lookups import looked_up_once
 from .parameters import (
     BY_KEYWORD,
     GROUP_NAME,
@@ -45,40 +44,6 @@ TRANSMITTANCE = BY_KEYWORD["transmittance"]
 
 LUMINANCE = (0.2126, 0.7152, 0.0722)
 """Of linear red, green and blue (ITU-R BT.709)."""
-
-_looked_up: dict[tuple, Any] | None = None
-"""What functions of :func:`looked_up_once` returned in the outermost block of :func:`unchanged_nodes`."""
-
-
-@contextmanager
-def unchanged_nodes() -> Iterator[None]:
-    """Let the nodes of each material be looked through once, however many objects it has: within the block, none of them
-    may come, go or be plugged in otherwise.
-    """
-    global _looked_up
-    outer = _looked_up
-    if outer is None:
-        _looked_up = {}
-    try:
-        yield
-    finally:
-        _looked_up = outer
-
-
-def looked_up_once(function: Callable) -> Callable:
-    """Make a function of a material remember what it returns in a block of :func:`unchanged_nodes`."""
-
-    @wraps(function)
-    def remembering(material: bpy.types.Material | None) -> Any:
-        if _looked_up is None:
-            return function(material)
-        key = function, material
-        if key not in _looked_up:
-            _looked_up[key] = function(material)
-        return _looked_up[key]
-
-    return remembering
-
 
 def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.types.Material:
     """Make a material whose surface is a nested dielectric.

@@ -11,14 +11,8 @@ from typing import Any
 
 import bpy
 
-from .materials import (
-    dielectric_node,
-    dielectrics,
-    looked_up_once,
-    may_disperse,
-    medium_material,
-    unchanged_nodes,
-)
+from .lookups import looked_up_once, unchanged_nodes
+from .materials import dielectric_node, dielectrics, may_disperse, medium_material
 from .parameters import BY_KEYWORD, GROUP_NAME, MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
 from .preset_materials import preset_material
 from .trees import mend_nodes

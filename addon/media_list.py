@@ -8,7 +8,8 @@ import bpy
 
 from .analysis import is_offset
 from .checks import Problem, material_problems
-from .materials import dielectric_node, may_disperse, unchanged_nodes
+from .lookups import unchanged_nodes
+from .materials import dielectric_node, may_disperse
 from .media import all_objects
 from .node_group import group_version
 from .priorities import Row, priority_rows

@@ -16,6 +16,7 @@ from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
 from .contacts import PROBE
 from .dispersion import mean_cauchy_distances
 from .identity import NO_SCENE, SCENE_PROPERTY
+from .lookups import looked_up_once
 from .native_nodes import NATIVE_GROUP, NativeBody
 from .parameters import (
     BASIC_KEYWORDS,
@@ -137,6 +138,10 @@ SHADER_NODE = "Nested Dielectric Shader"
 TABLES_NODE = "Spectral Tables"
 COORDINATE_NODE = "Spectral Coordinate"
 ROW_OUTPUT = "Row"
+FRAME_NODE = "Frame"
+FRAME_PATH, TIMED_FRAME_PATH = "frame_float", "frame_current"
+"""Both are the number of the frame; by the other one the depsgraph knows that a material depends on it."""
+
 DISPERSER_NODE = "Cycles Dispersion"
 
 LEAST_PREVIEW_IOR = 1.2
@@ -225,6 +230,7 @@ def find_group() -> bpy.types.NodeTree | None:
     return next((tree for tree in groups if group_version(tree) == MATERIAL_VERSION), None)
 
 
+@looked_up_once
 def group_version(tree: bpy.types.NodeTree | None) -> int | None:
     """Return which version of the material a group is, :data:`DAMAGED` if others have taken from it what it needs, or
     None if it is another group.
@@ -700,15 +706,28 @@ def _analysed_scene(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:
     tree.links.new(view_layer_attribute(tree, f'["{ANALYSED}"]').outputs["Color"], validity.inputs[0])
     analysed, frame, every_frame = validity.outputs
     frame_now, blurs, shutter, simplified = (
-        view_layer_attribute(tree, path).outputs["Fac"]
-        for path in ("frame_current", "render.use_motion_blur", "render.motion_blur_shutter", "render.use_simplify")
+        view_layer_attribute(tree, path)
+        for path in (FRAME_PATH, "render.use_motion_blur", "render.motion_blur_shutter", "render.use_simplify")
     )
+    frame_now.name = FRAME_NODE
+    frame_now, blurs, shutter, simplified = (node.outputs["Fac"] for node in (frame_now, blurs, shutter, simplified))
     this_frame = math("COMPARE", frame_now, frame, 0.5)
     still = math("LESS_THAN", math("MULTIPLY", blurs, shutter), 1e-6)
     moment = math("MAXIMUM", every_frame, math("MULTIPLY", this_frame, still))
     shapes = math("SUBTRACT", analysed, simplified)
     holds = math("GREATER_THAN", math("MULTIPLY", moment, shapes), 0.5)
     return math("SUBTRACT", math("MULTIPLY", holds, math("ADD", number, 1.0)), 1.0)
+
+
+def follow_frames(follow: bool) -> None:
+    """Let materials be evaluated anew on each frame, with all objects that have them, because what they are told may not hold
+    there; or not.
+    """
+    path = TIMED_FRAME_PATH if follow else FRAME_PATH
+    for tree in bpy.data.node_groups:
+        if tree.get(VERSION_PROPERTY) == MATERIAL_VERSION and tree.is_editable and (node := tree.nodes.get(FRAME_NODE)):
+            if node.attribute_name in (FRAME_PATH, TIMED_FRAME_PATH) and node.attribute_name != path:
+                node.attribute_name = path
 
 
 def _takes_front_ior(tree: bpy.types.NodeTree) -> bpy.types.NodeSocket:

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import bpy
 
 from .animation import curves, is_animated
-from .materials import dielectric_node, medium_material, parameter_socket, unchanged_nodes
+from .lookups import unchanged_nodes
+from .materials import dielectric_node, medium_material, parameter_socket
 from .media import all_objects, get_priority, material_priority, own_priority, set_priority
 from .parameters import MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
 from .trees import mend_nodes

@@ -11,11 +11,9 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from .changes import REPORT_PROPERTY
 from .checks import Problem
 from .settings import AT_LEAST, LABELS, Changed
-
-REPORT_PROPERTY = "nd_prepared"
-"""Custom property of a scene."""
 
 MOST_CHARACTERS = 4000
 """Of problems, and of changes, that are kept."""

@@ -13,7 +13,8 @@ from .compatibility import BACKENDS, blender_note, blender_problem, get_backend
 from .cutting import is_cut, is_kept, last_cut
 from .drawing import ObjectProperties, Sidebar, draw_alert, draw_text
 from .icons import ready_icon
-from .materials import medium_material, parameter_socket, unchanged_nodes
+from .lookups import unchanged_nodes
+from .materials import medium_material, parameter_socket
 from .media import get_priority, own_priority
 from .media_list import Line, is_open, listed_lines, listed_media
 from .media_rows import active_line, make_places

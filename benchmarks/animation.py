@@ -42,7 +42,7 @@ from bench_scenes import (  # noqa: E402
     turned,
     turned_profile,
 )
-from bench_worker import CUT, Cost, State, Worker, now, sampling_of, save  # noqa: E402
+from bench_worker import NESTED, Cost, State, Worker, now, sampling_of, save  # noqa: E402
 from hand_split import split  # noqa: E402
 from nested_dielectric import iced_water  # noqa: E402
 from scenes import read_picture  # noqa: E402
@@ -133,7 +133,7 @@ def measure(frames: Sequence[int], samples: int, resolution: int) -> Rendered:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         bpy.ops.wm.read_factory_settings(use_empty=True)
         save(folder, scene_on(0), split(()))
-        for way in CUT:
+        for way in ("cut", "asking"):
             workers[way].build(folder, resolution)
         for place, frame in enumerate(frames):
             scene = scene_on(frame)

@@ -33,7 +33,7 @@ import nested_dielectric as nd  # noqa: E402
 from bench_errors import Reference, block_means, floor, relative_error  # noqa: E402
 from bench_report import plot, renew, tables  # noqa: E402
 from bench_scenes import DISPERSING, SCENES, BenchScene  # noqa: E402
-from bench_worker import CUT, WAVELENGTHS, Built, Cost, Worker, save  # noqa: E402
+from bench_worker import NESTED, WAVELENGTHS, Built, Cost, Worker, save  # noqa: E402
 from hand_split import Piece, Split, split  # noqa: E402
 from scenes import BOUNCES  # noqa: E402
 
@@ -120,7 +120,8 @@ def measure(name: str, plan: Plan, deadline: float) -> dict:
             if len(built) < plan.preparations and time.monotonic() < latest:
                 built.append(interleaved(workers, build, place + 1))
         timing = timings(rounds, timed, plan.resolution)
-        workers.pop("passed", None)  # the picture of hand-split Glass
+        for way in ("passed", "plain"):  # the picture of hand-split Glass
+            workers.pop(way, None)
         left = (deadline - time.monotonic()) * (0.6 if peers else 0.9)
         samples = affordable(costs_on_the_wall(workers, rounds, timed), plan, left)
         counts = plan.counts(samples)
@@ -159,7 +160,7 @@ def measure(name: str, plan: Plan, deadline: float) -> dict:
 
 def ways(disperses: bool) -> list[str]:
     """Ways that Cycles renders a scene in. Where media disperse none overlap: naive Glass is hand-split Glass."""
-    return ["split", *CUT, "brute"] if disperses else ["naive", "split", *CUT]
+    return ["split", "plain", *NESTED, "brute"] if disperses else ["naive", "split", "plain", *NESTED]
 
 
 def interleaved(workers: Mapping[str, Worker], ask: Callable[[Worker], object], place: int) -> dict:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import statistics
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -18,14 +19,16 @@ LABELS = {
     "naive": "naive Glass",
     "split": "hand-split Glass",
     "passed": "Glass and hidden faces",
+    "plain": "Glass without OSL",
     "cut": "cut surfaces",
     "asking": "asking the scene",
+    "native": "Cycles' own nodes",
     "brute": "one render a wavelength",
     "luxcore": "LuxCore",
     "mitsuba": "Mitsuba",
 }
 
-NESTED = ("cut", "asking")
+NESTED = ("cut", "asking", "native")
 """Ways of nested dielectrics."""
 
 STYLES = {
@@ -33,6 +36,7 @@ STYLES = {
     "split": {"color": "black"},
     "cut": {"color": "tab:blue"},
     "asking": {"color": "tab:cyan", "linestyle": "--"},
+    "native": {"color": "tab:purple"},
     "brute": {"color": "tab:gray"},
     "luxcore": {"color": "tab:green"},
     "mitsuba": {"color": "tab:orange"},
@@ -120,12 +124,13 @@ def time_table(results: Sequence[dict]) -> str:
         "Time of sampling, hand-split Glass = 1",
         "Glass, CPU µs a sample",
         *(LABELS[way] for way in shown),
+        "Cycles' own nodes, Glass without OSL = 1",
         "rounds",
     ]
     rows = []
     for result in results:
         timing = result["timing"]
-        cells = [ratio_cell(timing["ways"].get(way)) for way in shown]
+        cells = [ratio_cell(timing["ways"].get(way)) for way in shown] + [plain_cell(timing["ways"])]
         micros = f"{timing['cpu_microseconds_per_sample']:.1f}"
         rows.append([result["title"], micros, *cells, str(len(timing["ways"]["split"]["ratios"]))])
     return markdown(header, rows)
@@ -138,14 +143,24 @@ def ratio_cell(way: dict | None) -> str:
     return f"{way['ratio']:.2f} ({min(way['ratios']):.2f}–{max(way['ratios']):.2f})"
 
 
+def plain_cell(ways: dict) -> str:
+    """The ratio of media in Cycles' own nodes to hand-split Glass without OSL in the same round, and its range."""
+    if not {"native", "plain"} <= ways.keys():
+        return ""
+    ratios = [native / plain for native, plain in zip(ways["native"]["cpu"], ways["plain"]["cpu"], strict=True)]
+    return ratio_cell({"ratio": statistics.median(ratios), "ratios": ratios})
+
+
 def cost_table(results: Sequence[dict]) -> str:
     """Preparation and memory."""
-    header = ["CPU s and MB", "Glass: first sample", "again", "MB"]
+    header = ["CPU s and MB"]
+    for way in ("Glass", LABELS["plain"]):
+        header += [f"{way}: first sample", "again", "MB"]
     for way in NESTED:
         header += [f"{LABELS[way]}: prepare", "first sample", "again", "MB"]
     rows = []
     for result in results:
-        cells = cost_cells(result, "split")[1:]
+        cells = cost_cells(result, "split")[1:] + cost_cells(result, "plain")[1:]
         for way in NESTED:
             cells += cost_cells(result, way)
         rows.append([result["title"], *cells])
@@ -154,6 +169,8 @@ def cost_table(results: Sequence[dict]) -> str:
 
 def cost_cells(result: dict, way: str) -> list[str]:
     """CPU seconds of preparing, of the first sample and of what a further render costs besides samples, and MB."""
+    if way not in result["preparation"]:
+        return [""] * 4
     preparation = result["preparation"][way]
     seconds = [preparation[step]["cpu"] for step in ("prepare", "first_render")]
     seconds.append(result["timing"]["ways"][way]["again_cpu"])
@@ -162,15 +179,15 @@ def cost_cells(result: dict, way: str) -> list[str]:
 
 def error_table(results: Sequence[dict]) -> str:
     """Errors at the most samples, and what is left without noise."""
-    floored = [way for way in LABELS if way != "split" and any(way in result["errors"] for result in results)]
+    floored = [way for way in LABELS if way not in ("split", "plain") and any(way in result["errors"] for result in results)]
     header = ["Error (relMSE) × 10⁶", "samples", "Glass", *(LABELS[way] for way in NESTED)]
     header += [f"floor: {LABELS[way]}" for way in floored]
     rows = []
     for result in results:
         errors = result["errors"]
-        last = [errors[way]["points"][-1] for way in ("split", *NESTED)]
+        last = [errors[way]["points"][-1] if way in errors else None for way in ("split", *NESTED)]
         cells = [floor_cell(errors[way]["floor"]) if way in errors else "" for way in floored]
-        rows.append([result["title"], str(last[0]["samples"]), *(millionths(p["relmse"]) for p in last), *cells])
+        rows.append([result["title"], str(last[0]["samples"]), *(millionths(p["relmse"]) if p else "" for p in last), *cells])
     return markdown(header, rows)
 
 

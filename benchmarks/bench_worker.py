@@ -1,7 +1,7 @@
 """One way to render the benchmark's scenes, in a process of its own.
 
 :class:`Worker` starts the process; a second call of :meth:`Worker.build` begins again with an empty file. Pictures are
-rendered on the CPU through OSL, with the same settings for every way.
+rendered on the CPU, through OSL but for :data:`WITHOUT_OSL`, with the same settings for every way otherwise.
 """
 
 from __future__ import annotations
@@ -34,8 +34,15 @@ from scenes import add, add_camera, cycles_glass, native, new_scene, render  # n
 FIRST, LAST = "| Sample 0/", "| Finished"
 """What Cycles says before its first sample, when all is loaded and compiled, and after its last."""
 
-CUT = {"cut": True, "asking": False}
-"""Ways of nested dielectrics, and whether surfaces are cut."""
+NESTED = {
+    "cut": {"cut": True, "backend": "OSL"},
+    "asking": {"cut": False, "backend": "OSL"},
+    "native": {"cut": True, "backend": "NATIVE"},
+}
+"""Ways of nested dielectrics, and how scenes are prepared for them."""
+
+WITHOUT_OSL = ("native", "plain")
+"""Ways for which Open Shading Language is switched off."""
 
 WAVELENGTHS = 32
 """Renders that one picture by brute force is put together from, at most."""
@@ -69,7 +76,8 @@ class Worker:
 
     `way` is "naive": Cycles' Glass on overlapping bodies, each with its own index; "split": Cycles' Glass on hand-split
     pieces; "passed": the same, with the surfaces that are inside a winner for a path to pass; "cut": nested dielectrics
-    whose surfaces are cut where media cross; "asking": those that ask the scene there; "brute": Glass on hand-split
+    whose surfaces are cut where media cross; "asking": those that ask the scene there; "native": cut ones in Cycles' own nodes;
+    "plain": as "split", without OSL; "brute": Glass on hand-split
     pieces, one render a wavelength. `state` is the class of this process's :class:`State`, with its module.
     """
 
@@ -154,12 +162,13 @@ class State:
         self.glass: list[bpy.types.Material] = []
 
     def build(self, folder: Path, resolution: int) -> Built:
-        glass = self.way in ("split", "passed")
+        glass = self.way in ("split", "passed", "plain")
         view, environment, parts = pickle.loads((folder / (PIECES if glass else BODIES)).read_bytes())
         scene = new_scene(resolution)
+        scene.cycles.shading_system = self.way not in WITHOUT_OSL
         set_sky(environment)
         add_camera(view.location, view.target, angle=view.angle_degrees)
-        if self.way in CUT:
+        if self.way in NESTED:
             self.add_media(parts)
         elif self.way == "naive":
             add_bodies(parts, lambda body: cycles_glass(body.ior))
@@ -171,8 +180,8 @@ class State:
             add_hidden(pickle.loads((folder / HIDDEN).read_bytes())[-1])
         scene.render.use_persistent_data = True
         start = now()
-        if self.way in CUT:
-            nd.prepare(scene, cut=CUT[self.way])
+        if self.way in NESTED:
+            nd.prepare(scene, **NESTED[self.way])
         prepared = now()
         draw(1, 0)
         return Built(prepared - start, now() - prepared, held("VmHWM"), self.before)

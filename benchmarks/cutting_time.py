@@ -19,7 +19,7 @@ import bpy  # noqa: E402
 import nested_dielectric as nd  # noqa: E402
 from bench_report import markdown, renew  # noqa: E402
 from bench_scenes import BenchScene, bucket, droplets, iced_water_scene  # noqa: E402
-from bench_worker import CUT, Cost, add_bodies, draw, nested, now  # noqa: E402
+from bench_worker import NESTED, Cost, add_bodies, draw, nested, now  # noqa: E402
 from scenes import add_camera, new_scene  # noqa: E402
 
 SCENES: dict[str, tuple[Callable[[], BenchScene], str]] = {
@@ -67,7 +67,7 @@ def measured(title: str, way: str) -> tuple[int, list[Cost]]:
     scene.render.use_persistent_data = True
     scene.view_layers[0].update()
     start = now()
-    nd.prepare(scene, cut=CUT[way])
+    nd.prepare(scene, **NESTED[way])
     costs = [now() - start, evaluation()]
     bpy.data.objects[moving].location.x += 1e-4
     costs.append(evaluation())

@@ -11,7 +11,7 @@ import pytest
 from mathutils import Matrix
 
 import nested_dielectric as nd
-from nested_dielectric import analysis, live
+from nested_dielectric import analysis, cutting, live, node_group
 from nested_dielectric.identity import SCENE_PROPERTY
 from nested_dielectric.node_group import ANALYSED
 from scenes import (
@@ -112,6 +112,128 @@ def frames(scene: bpy.types.Scene, folder) -> np.ndarray:
 
 
 @pytest.fixture
+def looks(monkeypatch):
+    """The scenes that are looked at, for what surrounds their media and for what is cut of them."""
+    found = []
+    for module, name in ((analysis, "analyse"), (cutting, "cut_surfaces")):
+        look = getattr(module, name)
+        monkeypatch.setattr(
+            module, name, lambda scene, look=look, name=name, **keywords: found.append(name) or look(scene, **keywords)
+        )
+    return found
+
+
+def set_samples(scene: bpy.types.Scene) -> None:
+    scene.cycles.samples, scene.cycles.seed, scene.render.filepath = 7, 3, "//other"
+
+
+def change_the_world(scene: bpy.types.Scene) -> None:
+    scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.5
+
+
+NO_CHANGES = [lambda scene: None, set_samples, lambda scene: scene.frame_set(scene.frame_current)]
+
+
+def move_and_set_a_frame(scene: bpy.types.Scene) -> None:
+    """To set a frame evaluates what was moved before."""
+    bpy.data.objects["Fluid"].location.x = 1.0
+    scene.frame_set(scene.frame_current)
+
+
+def write_a_priority(scene: bpy.types.Scene) -> None:
+    """No tag tells of what is written into a custom property."""
+    bpy.data.objects["Bead"]["nd_priority"] = 5
+
+
+def take_what_is_told(scene: bpy.types.Scene) -> None:
+    bpy.data.objects["Bead"]["nd_outside"] = "x"
+
+
+def animate(scene: bpy.types.Scene) -> None:
+    bpy.data.objects["Bead"].animation_data_create()
+
+
+def add_a_medium(scene: bpy.types.Scene) -> None:
+    add_sphere("Bubble", 0.2, nd.new_material("Air", ior=1.0), 0)
+
+
+def rename_the_node(scene: bpy.types.Scene) -> None:
+    bpy.data.materials["Water"].node_tree.nodes["Nested Dielectric"].name = "Mine"
+
+
+def damage_the_group(scene: bpy.types.Scene) -> None:
+    tree = node_group.find_group()
+    tree.nodes.remove(tree.nodes[node_group.SHADER_NODE])
+
+
+def undo(scene: bpy.types.Scene) -> None:
+    live.forget_shapes()
+
+
+def listen(scene: bpy.types.Scene) -> None:
+    """Another's handler may change anything after ours has seen an update."""
+    bpy.app.handlers.depsgraph_update_post.append(lambda *_: None)
+
+
+CHANGES = [
+    move_object,
+    move_and_set_a_frame,
+    write_a_priority,
+    take_what_is_told,
+    animate,
+    change_the_index,
+    add_a_medium,
+    lambda scene: bpy.data.objects.remove(bpy.data.objects["Bead"]),
+    lambda scene: setattr(bpy.data.objects["Bead"], "hide_render", True),
+    lambda scene: bpy.data.objects["Bead"].hide_set(True),
+    lambda scene: setattr(bpy.data.objects["Bead"].data.vertices[0], "co", (0.0, 0.0, 2.0)),
+    lambda scene: setattr(scene.render, "use_simplify", True),
+    lambda scene: bpy.data.objects["Bead"].modifiers.new("More", "SUBSURF"),
+    lambda scene: bpy.data.objects["Bead"].constraints.new("COPY_LOCATION"),
+    lambda scene: setattr(scene.camera, "location", (0.0, 0.0, 0.0)),
+    lambda scene: scene.frame_set(2),
+    rename_the_node,
+    damage_the_group,
+    undo,
+    listen,
+]
+
+
+@pytest.mark.quick
+def test_nothing_is_looked_at_before_a_render_of_what_has_not_changed(looks):
+    """Each on its own leaves the scene as it was."""
+    scene = build_scene()
+    nd.prepare(scene, cut=True)
+    looks.clear()
+    for change in (*NO_CHANGES, change_the_world):
+        change(scene)
+        live.analyse_before_render(scene)
+        if change is change_the_world:
+            looks.clear()  # its nodes are shading to the depsgraph
+        assert looks == [], change
+    change_the_index(scene)
+    live.analyse_before_render(scene)
+    assert looks == ["analyse", "cut_surfaces"]
+    live.analyse_before_render(scene)
+    assert looks == ["analyse", "cut_surfaces"]
+
+
+@pytest.mark.quick
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_has_changed_is_looked_at_before_a_render(change, looks):
+    scene = build_scene()
+    nd.prepare(scene, cut=True)
+    looks.clear()
+    handlers = list(bpy.app.handlers.depsgraph_update_post)
+    try:
+        change(scene)
+        live.analyse_before_render(scene)
+    finally:
+        bpy.app.handlers.depsgraph_update_post[:] = handlers
+    assert looks == ["analyse", "cut_surfaces"]
+
+
+@pytest.fixture
 def script(request):
     """A handler that changes the scene on every frame."""
     bpy.app.handlers.frame_change_post.append(request.param)
@@ -177,6 +299,7 @@ scene = bpy.context.scene
 def change(scene, *_):
     bpy.data.objects["Fluid"].location.x = 0.9 * (scene.frame_current - 1)
 bpy.app.handlers.frame_change_post.append(change)
+scene.render.use_persistent_data = True
 scene.render.filepath = sys.argv[2]
 bpy.ops.render.render(animation=True)
 """
