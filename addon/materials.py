@@ -124,8 +124,13 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
 
 
 def _set_surface(material: bpy.types.Material) -> None:
-    """Let light through surfaces that are not there, and EEVEE show colours through one another."""
+    """Let light through surfaces that are not there, in the render and in EEVEE."""
     material.use_transparent_shadow = True
+    show_colours_through(material)
+
+
+def show_colours_through(material: bpy.types.Material) -> None:
+    """Make EEVEE multiply the colours of surfaces that lie behind one another; Dithered ones have but grey clearness."""
     material.surface_render_method = "BLENDED"
 
 
