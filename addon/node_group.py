@@ -413,7 +413,7 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
         description="Absorption; where others win over the medium that of light that comes straight from the camera or from an object inside",
     )
     interface.new_socket(
-        PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="A stand-in for EEVEE"
+        PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="The dielectric, for EEVEE"
     )
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
     for parameter in SOCKETS:
