@@ -13,7 +13,11 @@ from .native_nodes import TELLS_DISPERSION, Coefficients, NativePart, Surroundin
 from .shader_nodes import Number, Socket, attribute, plug, view_layer_attribute
 
 LEAST_CONTRAST = 1.1
-"""Ratio of two indices that keeps ice in water in sight, and bubbles of air that nobody told what they are in."""
+"""Ratio of two indices that keeps ice in water in sight."""
+
+MOST_OF_AIR = 1.05
+WATER = 1.333
+"""A body of less index than the first is a bubble. Whose surroundings nobody tells is shown as in a liquid of the second."""
 
 EDGE_SHARPNESS = 1.6
 """How fast clearness gives way to refraction towards edges."""
@@ -41,8 +45,10 @@ class Preview(NativePart):
     def build(self) -> None:
         # EEVEE shows no volumes, so surfaces absorb, whoever does so in Cycles.
         outside = self.call(self.surroundings, Scene=NOWHERE, Cut=TELLS_DISPERSION)
-        for name in ("Outer IOR", "Outer Coefficients", "In Air"):
+        for name in ("Outer Coefficients", "In Air"):
             self.define(name, outside[name])
+        guess = 1.0 + (WATER - 1.0) * (self.number("IOR") < MOST_OF_AIR)
+        self.define("Outer IOR", self.choose(Number(self.tree, outside["Known"]), guess, Number(self.tree, outside["Outer IOR"])))
         shown = self.mix(self.reflectance, self.mix(self.veil, self.clear, self.refraction), self.reflection)
         exists = Number(self.tree, outside["Exists"])
         self.give("Preview", "SHADER", self.mix(exists, self.node("ShaderNodeBsdfTransparent").outputs[0], shown))

@@ -6,7 +6,7 @@ import pytest
 
 import nested_dielectric as nd
 from nested_dielectric.materials import dielectric_node
-from nested_dielectric.preview_nodes import LEAST_CONTRAST
+from nested_dielectric.preview_nodes import LEAST_CONTRAST, WATER
 from scenes import add_box, add_camera, add_plane, add_sphere, fresnel, mostly_again, new_scene, render, set_half_world, set_world
 
 HIDDEN = 1e6
@@ -65,14 +65,26 @@ def reflected(ior: float, outside: float | None, degrees: float = 0.0, back: boo
 @pytest.mark.parametrize("back", mostly_again([False, True]))
 @pytest.mark.parametrize(
     ("ior", "outside", "contrast"),
-    [(1.5, None, 1.5), (1.5, 1.0, 1.5), (2.4, 1.333, 2.4 / 1.333), (1.0, 1.333, 1.333), (1.31, 1.333, LEAST_CONTRAST)],
+    [
+        (1.5, None, 1.5),
+        (1.0, None, WATER),
+        (1.5, 1.0, 1.5),
+        (2.4, 1.333, 2.4 / 1.333),
+        (1.0, 1.333, 1.333),
+        (1.31, 1.333, LEAST_CONTRAST),
+    ],
 )
 def test_reflectance_is_that_of_both_indices_but_never_too_little_to_be_seen(ior, outside, contrast, back):
     assert reflected(ior, outside, back=back) == near(fresnel(0.0, 1.0, contrast))
 
 
-def test_a_bubble_in_water_is_silvery_towards_its_edges():
-    assert reflected(1.0, 1.333, 60.0) == near(1.0)
+@pytest.mark.parametrize("told", mostly_again([1.333, None]))
+def test_a_bubble_in_water_is_silvery_towards_its_edges_told_or_not(told):
+    assert reflected(1.0, told, 60.0) == near(1.0)
+
+
+def test_air_in_air_is_hardly_seen():
+    assert reflected(1.0, 1.0) == near(fresnel(0.0, 1.0, LEAST_CONTRAST))
 
 
 def test_what_leaves_for_thinner_media_is_not_totally_reflected_so_that_things_behind_stay_in_sight():
@@ -95,17 +107,20 @@ def seen_through(*objects: bpy.types.Object) -> np.ndarray:
 
 
 LEFT = np.array((0.9, 0.5, 0.2))
+JUICE = {"ior": 1.0, "transmittance": LEFT, "transmittance_depth": 1.0}
 
 
 @pytest.mark.parametrize("low", [-0.5, 3.0])
 def test_a_colour_is_that_of_the_whole_way_wherever_the_object_has_its_origin(low):
-    box = add_box("Box", (-0.5, -0.5, low), (0.5, 0.5, low + 1.5), previewed(ior=1.0, transmittance=LEFT, transmittance_depth=1.0))
+    box = add_box("Box", (-0.5, -0.5, low), (0.5, 0.5, low + 1.5), previewed(**JUICE))
+    tell(box, 1.0)
     # Two faces show each other, of which each reflects 0.2 %.
     assert seen_through(box) == pytest.approx(LEFT**1.5, rel=0.03)
 
 
 def test_what_a_clear_body_displaces_of_a_colour_is_given_back():
-    juice = add_box("Juice", (-0.5, -0.5, -1.0), (0.5, 0.5, 1.0), previewed("Juice", ior=1.0, transmittance=LEFT, transmittance_depth=1.0))
+    juice = add_box("Juice", (-0.5, -0.5, -1.0), (0.5, 0.5, 1.0), previewed("Juice", **JUICE))
+    tell(juice, 1.0)
     ice = add_box("Ice", (-0.3, -0.3, -0.7), (0.3, 0.3, 0.3), previewed("Ice", ior=1.0))
     tell(ice, -1.0, LEFT, 1.0)
     assert seen_through(juice, ice) == pytest.approx(LEFT, rel=0.03)
