@@ -80,12 +80,23 @@ def new_material(name: str, preset: str | None = None, **keywords: Any) -> bpy.t
     for parameter, value in values.items():
         set_parameter(node, parameter, value)
     _set_table(material, node, settings, table)
-    material.use_transparent_shadow = True
+    _set_surface(material)
     material.diffuse_color = viewport_colour(node.inputs["Transmittance"].default_value[:3])
     if loaded is not None:
         material[PRESET_PROPERTY] = f"{loaded.description} {loaded.source}"
         material[KEY_PROPERTY] = loaded.key
     return material
+
+
+def _set_surface(material: bpy.types.Material) -> None:
+    """Let light through surfaces that are not there, in the render and in EEVEE."""
+    material.use_transparent_shadow = True
+    show_colours_through(material)
+
+
+def show_colours_through(material: bpy.types.Material) -> None:
+    """Make EEVEE multiply the colours of surfaces that lie behind one another; Dithered ones have but grey clearness."""
+    material.surface_render_method = "BLENDED"
 
 
 def viewport_colour(transmittance: Sequence[float]) -> tuple[float, float, float, float]:
@@ -150,7 +161,7 @@ def add_node(material: bpy.types.Material, tree: bpy.types.NodeTree) -> tuple[bp
     tree.links.new(node.outputs[node_group.CYCLES_OUTPUT], output.inputs["Surface"])
     complete_nodes(material)
     refresh_spectrum(material)
-    material.use_transparent_shadow = True
+    _set_surface(material)
     return node, True
 
 

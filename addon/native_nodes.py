@@ -93,7 +93,7 @@ absorbs for all rays; Cut whether the scene shows cut surfaces, and what their f
 """
 
 
-class _Part(Part):
+class NativePart(Part):
     """A part of the native body."""
 
     NAME = ""
@@ -207,7 +207,7 @@ class _Part(Part):
         return self.vector("REFRACT", self.travelling, self.bumped, (1.0 / self.eta).socket)
 
 
-class _Coefficients(_Part):
+class Coefficients(NativePart):
     """What a medium absorbs of three colours per length (Beer 1852); nothing without a depth."""
 
     NAME = "Coefficients"
@@ -220,12 +220,12 @@ class _Coefficients(_Part):
         self.give("Coefficients", "VECTOR", self.scaled(self.join(found), 1.0 / self.raw("Depth").math("MAXIMUM", 0.0, first=True)))
 
 
-class _Surroundings(_Part):
+class Surroundings(NativePart):
     """What lies outside the surface, told by the face, by the analysis to all objects of the material, or to this object."""
 
     NAME = "Surroundings"
 
-    def __init__(self, coefficients: _Coefficients) -> None:
+    def __init__(self, coefficients: Coefficients) -> None:
         self.coefficients = coefficients
         super().__init__()
 
@@ -316,7 +316,7 @@ class _Surroundings(_Part):
         return self.call(self.coefficients, Transmittance=transmittance, Depth=depth)["Coefficients"]
 
 
-class _Light(_Part):
+class _Light(NativePart):
     """What becomes of light on its way to the surface, and of shadow rays there."""
 
     NAME = "Light"
@@ -389,7 +389,7 @@ class _Light(_Part):
         return self.where(self.surely(most < 0.0), self.choose(fades, 1.0, near), 1.0)
 
 
-class _Weights(_Part):
+class _Weights(NativePart):
     """Factors on reflection and on refraction."""
 
     NAME = "Weights"
@@ -461,7 +461,7 @@ class _Weights(_Part):
         return tuple(self.where(none, self.choose(filters, 1.0, factor), 1.0) for factor in factors)
 
 
-class _Tangents(_Part):
+class _Tangents(NativePart):
     """The way along the surface that anisotropy refers to, and what it is made from, as in osl/lobes.h."""
 
     NAME = "Tangents"
@@ -483,7 +483,7 @@ class _Tangents(_Part):
         self.give("Along", "VECTOR", self.choose_vector(usable, self.geometry["Tangent"], self.vector("NORMALIZE", along)))
 
 
-class _Stretched(_Part):
+class _Stretched(NativePart):
     """Roughness and anisotropy as Cycles takes them, made round where the normal points along the tangents' axis."""
 
     NAME = "Stretched"
@@ -502,7 +502,7 @@ class _Stretched(_Part):
         self.give("Anisotropy", "FLOAT", (1.0 - ratio) * self.raw("Stretch").math("SIGN"))
 
 
-class _Glass(_Part):
+class _Glass(NativePart):
     """Cycles' own Glass."""
 
     NAME = "Glass"
@@ -522,7 +522,7 @@ class _Glass(_Part):
         self.give("BSDF", "SHADER", self.menu("Distribution", "SHADER", found))
 
 
-class _Special(_Part):
+class _Special(NativePart):
     """Glass as far as reflection and refraction have the same weight, and the rest of each by itself.
 
     The rest takes the reflectance of the surface as a whole, which is exact where it is smooth.
@@ -579,7 +579,7 @@ class _Special(_Part):
         return lazily(self.tree, "SHADER", apart.socket, self.menu("Distribution", "SHADER", found), separate)
 
 
-class _Spread(_Part):
+class _Spread(NativePart):
     """How much larger an index is at the F line than at the C line, as in osl/dispersion.h."""
 
     NAME = "Spread"
@@ -602,7 +602,7 @@ class _Spread(_Part):
         return (1.0 + self.dot(self.socket("Sellmeier B"), terms)).math("MAXIMUM", 0.0).math("SQRT")
 
 
-class _Dispersing(_Part):
+class _Dispersing(NativePart):
     """Cycles' own dispersion, of the ratio of both indices (Principled).
 
     That node tints refraction alone, by the root of its colour: so the brightest channel of light that arrives weighs all.
@@ -647,14 +647,15 @@ class _Dispersing(_Part):
         self.give("BSDF", "SHADER", self.mix(brightest, None, shown))
 
 
-class NativeBody(_Part):
+class NativeBody(NativePart):
     """The native body. Outputs: Surface; Shadow by Volume, 1 where the material's volume has to absorb for shadow rays; and what
     the artist's own nodes may ask, by the names of the group's outputs.
     """
 
     def build(self) -> None:
-        coefficients = _Coefficients()
-        outside = self.call(_Surroundings(coefficients))
+        coefficients = self.coefficients = Coefficients()
+        self.surroundings = Surroundings(coefficients)
+        outside = self.call(self.surroundings)
         for name in ("Face", "In Air", "Outer IOR", "Outer Coefficients"):
             self.define(name, outside[name])
         self._define_own(coefficients)
@@ -679,7 +680,7 @@ class NativeBody(_Part):
         white = self.join((1.0, 1.0, 1.0))
         self.give("Arriving Light", "COLOR", self.choose_vector(exists, white, light["Arrives"]))
 
-    def _define_own(self, coefficients: _Coefficients) -> None:
+    def _define_own(self, coefficients: Coefficients) -> None:
         """What follows from the material's own numbers and from what lies outside."""
         # A medium of JF's that splits no light has its index as it was typed.
         offset = self.number("Dispersion") * jf_ior(0.0, 1.0, LINE_D) * self.raw("Dispersion Model").equals(2) * self.raw("Disperse")

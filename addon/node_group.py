@@ -28,8 +28,9 @@ from .parameters import (
     SOCKETS,
     Parameter,
 )
+from .preview_nodes import Preview
 from .shader_source import inlined_source
-from .shader_nodes import SOCKET_TYPES, bounded, lazily, math_node, mix_shaders, mix_values, vector_math, view_layer_attribute
+from .shader_nodes import SOCKET_TYPES, Part, bounded, lazily, math_node, mix_shaders, mix_values, vector_math, view_layer_attribute
 from .spectral_images import ensure_row, holds, read_rows
 
 SHADER_FILE = "nested_dielectric.osl"
@@ -143,9 +144,6 @@ FRAME_PATH, TIMED_FRAME_PATH = "frame_float", "frame_current"
 """Both are the number of the frame; by the other one the depsgraph knows that a material depends on it."""
 
 DISPERSER_NODE = "Cycles Dispersion"
-
-LEAST_PREVIEW_IOR = 1.2
-"""Keeps bubbles, whose index is that of air, in sight in EEVEE."""
 
 _ANALYSIS_SOCKETS = {
     SCENE_SOCKET: (
@@ -421,7 +419,7 @@ def _add_sockets(tree: bpy.types.NodeTree) -> None:
         description="Absorption; where others win over the medium that of light that comes straight from the camera or from an object inside",
     )
     interface.new_socket(
-        PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="A stand-in for EEVEE"
+        PREVIEW_OUTPUT, in_out="OUTPUT", socket_type="NodeSocketShader", description="The dielectric, for EEVEE"
     )
     panels: dict[str, bpy.types.NodeTreeInterfacePanel] = {}
     for parameter in SOCKETS:
@@ -612,12 +610,13 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
 
     links.new(nodes.new("ShaderNodeBsdfRayPortal").outputs[0], script.inputs["CountsPortals"])
     links.new(_disperser(tree, inputs), script.inputs["Disperses"])
-    native = _native_body(
-        tree,
+    known = (
         {name: inputs.outputs[name] for name in inputs.outputs.keys() if name}
         | menus
-        | {"Scene": scene, "Holds": analysis_holds, "By Volume": by_volume, "Cut": cut},
+        | {"Scene": scene, "Holds": analysis_holds, "By Volume": by_volume, "Cut": cut}
     )
+    body = NativeBody()
+    native = _add_part(tree, NATIVE_GROUP, body, known)
     chosen = inputs.outputs[NATIVE_SOCKET]
     by_shader = mix_shaders(tree, script.outputs["Running"], native["Surface"], script.outputs["BSDF"])
     links.new(lazily(tree, "SHADER", chosen, by_shader, native["Surface"]), outputs.inputs[CYCLES_OUTPUT])
@@ -629,7 +628,8 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     links.new(inputs.outputs["Priority"], mask.inputs["Priority"])
     links.new(mask.outputs["Mask"], outputs.inputs[MASK_OUTPUT])
 
-    links.new(_preview(tree, inputs), outputs.inputs[PREVIEW_OUTPUT])
+    preview = _add_part(tree, PREVIEW_OUTPUT, Preview(body.surroundings, body.coefficients), known)
+    links.new(preview[PREVIEW_OUTPUT], outputs.inputs[PREVIEW_OUTPUT])
     for name, (kind, _) in FACT_OUTPUTS.items():
         kind = "RGBA" if kind == "COLOR" else kind
         by_shader = mix_values(tree, kind, script.outputs["Running"], native[name], script.outputs[name.replace(" ", "")])
@@ -637,14 +637,15 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     _arrange(tree)
 
 
-def _native_body(tree: bpy.types.NodeTree, known: dict[str, bpy.types.NodeSocket]) -> bpy.types.NodeOutputs:
-    """The outputs of the native body, which finds what it asks for by name."""
-    body = NativeBody()
+def _add_part(
+    tree: bpy.types.NodeTree, name: str, part: Part, known: dict[str, bpy.types.NodeSocket]
+) -> bpy.types.NodeOutputs:
+    """The outputs of a part, which finds what it asks for by name."""
     node = tree.nodes.new("ShaderNodeGroup")
-    node.node_tree = body.tree
-    node.name = node.label = NATIVE_GROUP
-    for name in body.asked:
-        tree.links.new(known[name], node.inputs[name])
+    node.node_tree = part.tree
+    node.name = node.label = name
+    for asked in part.asked:
+        tree.links.new(known[asked], node.inputs[asked])
     return node.outputs
 
 
@@ -774,26 +775,6 @@ def compiled(source: str) -> str:
         if not (_cycles.with_osl and _cycles.osl_compile(str(source_path), str(bytecode_path))):
             raise UnsupportedError("this Blender compiles no OSL; use the build from blender.org or the bpy wheel")
         return bytecode_path.read_text(encoding="utf-8")
-
-
-def _preview(tree: bpy.types.NodeTree, inputs: bpy.types.Node) -> bpy.types.NodeSocket:
-    """A look for EEVEE: clear, with reflections towards the edges, so that what stands in a medium stays in sight.
-
-    EEVEE's own refraction shows no second refracting object through the first. The reflectance is that of Schlick
-    (1994), the same from inside as from outside: total reflection would hide what lies behind.
-    """
-    nodes, links = tree.nodes, tree.links
-    math = partial(math_node, tree)
-    ior = math("MAXIMUM", inputs.outputs["IOR"], LEAST_PREVIEW_IOR)
-    normal_reflectance = math("POWER", math("DIVIDE", math("SUBTRACT", ior, 1.0), math("ADD", ior, 1.0)), 2.0)
-    edge = math("POWER", nodes.new("ShaderNodeLayerWeight").outputs["Facing"], 5.0)
-    reflectance = math("MULTIPLY_ADD", edge, math("SUBTRACT", 1.0, normal_reflectance), normal_reflectance)
-    clear = nodes.new("ShaderNodeBsdfTransparent")
-    links.new(inputs.outputs["Transmittance"], clear.inputs["Color"])
-    gloss = nodes.new("ShaderNodeBsdfAnisotropic")
-    gloss.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    links.new(inputs.outputs["Roughness"], gloss.inputs["Roughness"])
-    return mix_shaders(tree, reflectance, clear.outputs[0], gloss.outputs[0])
 
 
 def _absorption_coefficients(
@@ -947,11 +928,9 @@ def _arrange(tree: bpy.types.NodeTree) -> None:
         "ShaderNodeVectorMath": -1,
         "GeometryNodeMenuSwitch": 1,
         "ShaderNodeBsdfDiffuse": 2,
-        "ShaderNodeLayerWeight": 1,
         "ShaderNodeBsdfTransparent": 2,
         "ShaderNodeBsdfPrincipled": 2,
         "ShaderNodeBsdfRayPortal": 2,
-        "ShaderNodeBsdfAnisotropic": 2,
         "ShaderNodeScript": 2,
         "ShaderNodeTexImage": 1,
         "ShaderNodeGroup": 1,

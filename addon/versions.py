@@ -18,7 +18,7 @@ from .checks import Problem
 from .compatibility import require_blender, takes_front_ior
 from .lights import refresh_lights
 from .live import analyse
-from .materials import dielectric_node, refresh_spectrum
+from .materials import dielectric_node, refresh_spectrum, show_colours_through
 from .node_group import (
     DAMAGED,
     FRONT_IOR_VERSION,
@@ -61,9 +61,12 @@ def _update(outdated: list[bpy.types.ShaderNodeGroup]) -> tuple[str, ...]:
             of_curves, of_sockets, lost = _exchange(node, ensure_group())
             curves_moved.setdefault(node.id_data, {}).update(of_curves)
             sockets_moved.setdefault(node.id_data, {}).update(of_sockets)
+            owner = _owner(node.id_data)
+            if before != MATERIAL_VERSION and isinstance(owner, bpy.types.Material):
+                show_colours_through(owner)
             how = {MATERIAL_VERSION: "one of several copies", DAMAGED: "damaged"}.get(before, f"version {before}")
-            changes.append(f"{_owner(node.id_data).name}: was {how}")
-            changes += [f"{_owner(node.id_data).name}: {name!r} could not be kept" for name in lost]
+            changes.append(f"{owner.name}: was {how}")
+            changes += [f"{owner.name}: {name!r} could not be kept" for name in lost]
         _move_curves(curves_moved)
         _move_readers(sockets_moved)
     if refresh_lights():
