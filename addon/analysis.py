@@ -24,7 +24,7 @@ import numpy as np
 from . import contacts, meshes
 from .charging import Filling, left_to_volumes
 from .contacts import PROBE, Body, Contact, Memory, Solid
-from .foreign import is_clear, is_seen_by_all, lamp_box, sends_light_on
+from .foreign import is_clear, lamp_box, sends_light_on
 from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
 from .lookups import unchanged_nodes
@@ -56,6 +56,7 @@ from .node_group import (
     is_offset_group,
 )
 from .parameters import BY_NAME
+from .rays import is_seen_by_all
 from .shapes import mesh_of
 from .trees import is_plugged
 
@@ -482,6 +483,8 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
     for instance in depsgraph.object_instances:
         if instance.object.type != instance.object.original.type:
             continue  # the mesh of a text, a curve or a metaball, which stands before it
+        if is_cut_surface(instance.object):
+            continue  # what it shows is looked at where it is cut from
         if instance.object.type in SHAPED:
             row = _row(scene, facts, instance.object, np.array(instance.matrix_world))
             doubt = instance.is_instance and (instancing_doubt() or instancing_doubt(instance.parent.original))
@@ -507,7 +510,11 @@ def _survey(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Survey:
 
 def _changed(depsgraph: bpy.types.Depsgraph) -> set[bpy.types.ID]:
     """What has changed, as far as media may be concerned; meshes and objects of another shape are forgotten."""
-    changed = {update.id.original: update for update in depsgraph.updates if isinstance(update.id, _CONCERNED)}
+    changed = {
+        update.id.original: update
+        for update in depsgraph.updates
+        if isinstance(update.id, _CONCERNED) and not (isinstance(update.id, bpy.types.Object) and is_cut_surface(update.id))
+    }
     for data, update in changed.items():
         if update.is_updated_geometry or isinstance(data, bpy.types.Mesh):
             _shapes.pop(data.session_uid, None)

@@ -35,7 +35,6 @@ from .node_group import (
     GIVES_BACK_SOCKET,
     MASK_OUTPUT,
     NATIVE_SOCKET,
-    OBJECT_PROPERTIES,
     OUTSIDE_SOCKET,
 )
 from .parameters import BY_KEYWORD, LAMPS_BY_LOBE, SOCKETS, TINTED_MEDIA, limits_at_work

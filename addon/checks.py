@@ -26,7 +26,7 @@ from .materials import (
     may_disperse,
     medium_material,
 )
-from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, media, own_priority
+from .media import NO_SOLIDS, SOLID_TYPES, all_objects, dispersing_materials, get_priority, is_cut_surface, media, own_priority
 from .node_group import BY_VOLUME_SOCKET, MASK_OUTPUT, MATERIAL_SLOTS
 from .parameters import MAX_PRIORITY, NEIGHBOUR_PARAMETERS, PRIORITY_PROPERTY, SOCKETS
 from .shapes import triangles_of
@@ -361,7 +361,7 @@ def _resting_problems(
     names: dict[int, dict[str, None]] = {}
     for instance in depsgraph.object_instances:
         obj = instance.object
-        if obj.type not in SOLID_TYPES or obj.original in among or obj.original.hide_render:
+        if obj.type not in SOLID_TYPES or obj.original in among or obj.original.hide_render or is_cut_surface(obj):
             continue
         matrix = np.array(instance.matrix_world)
         box = np.array([tuple(corner) for corner in obj.bound_box]) @ matrix[:3, :3].T + matrix[:3, 3]

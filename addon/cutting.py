@@ -14,7 +14,7 @@ from hashlib import sha256
 import bpy
 import numpy as np
 
-from . import analysis
+from . import analysis, rays
 from .animation import curves
 from .changes import plain
 from .compatibility import is_native
@@ -37,7 +37,6 @@ from .cutting_nodes import (
     values_of,
 )
 from .cutting_plan import Cut, is_in_use, make_plan
-from .foreign import RAY_KINDS
 from .materials import dielectric_node
 from .media import CUT_OF, HIDDEN_BY_CUT
 from .native_nodes import TELLS_COLOUR, TELLS_DISPERSION
@@ -61,8 +60,7 @@ KEPT = "nd_kept"
 """Another: what the cut that is kept in the file was made from."""
 
 ALIKE = (
-    *(f"visible_{ray}" for ray in RAY_KINDS),
-    "visible_raycast",
+    *rays.SETTINGS,
     "is_holdout",
     "is_shadow_catcher",
     "pass_index",
@@ -175,29 +173,31 @@ def keep_in_file(scene: bpy.types.Scene, scripted: bool = False) -> str:
     """Keep the cut of the present frame in the file, so that whoever renders this frame has nothing to cut; other frames are
     cut as ever. :func:`forget_kept` takes it back. Returns why that cannot be, or nothing.
     """
-    surfaces = _surfaces(scene)
+    shown = surfaces_of(scene)
     plan, _ = make_plan(scene, scripted, is_native(scene))
-    if not surfaces or _holder(scene).get(PLAN) != _described(plan):
+    if not shown or _holder(scene).get(PLAN) != _described(plan):
         return "nothing is cut, or something has changed since; press Prepare Scene"
     if scene.render.use_simplify:
         return "Simplify may show other shapes in a render"
-    different = [obj.name for obj in surfaces if not all(map(analysis.is_same_in_renders, obj.modifiers))]
+    different = [obj.name for obj in shown if not all(map(analysis.is_same_in_renders, obj.modifiers))]
     if different:
         return f"{analysis.listed(tuple(different))} has modifiers that do otherwise in renders"
     forget_kept(scene)
     layer = scene.view_layers[0]
-    for surface in surfaces.values():
+    hidden = {surface: surface.hide_viewport for surface in shown.values()}
+    for surface in hidden:
         surface.hide_viewport = False
+        surface.hide_set(False, view_layer=layer)
     layer.update()
-    for surface in surfaces.values():
+    for surface in hidden:
         evaluated = surface.evaluated_get(layer.depsgraph)
         mesh = bpy.data.meshes.new_from_object(evaluated, preserve_all_data_layers=True, depsgraph=layer.depsgraph)
         mesh.use_auto_texspace = False
         mesh.texspace_location, mesh.texspace_size = evaluated.data.texspace_location, evaluated.data.texspace_size
-        _exchange_mesh(surface, mesh)
+        exchange_mesh(surface, mesh)
         _exchange_tree(surface.modifiers[0], ensure_kept_tree())
         _set_inputs(surface.modifiers[0], {FRAME_INPUT: scene.frame_current})
-        surface.hide_viewport = True
+        surface.hide_viewport = hidden[surface]
     _holder(scene)[KEPT] = _state(scene, plan)
     return ""
 
@@ -211,10 +211,10 @@ def is_kept(scene: bpy.types.Scene) -> bool:
 def forget_kept(scene: bpy.types.Scene) -> bool:
     """Cut every frame as it is rendered; return whether one was kept."""
     was_kept = is_kept(scene)
-    for obj, surface in _surfaces(scene).items() if was_kept else ():
+    for obj, surface in surfaces_of(scene).items() if was_kept else ():
         _exchange_tree(surface.modifiers[0], ensure_surface_tree())
-        _exchange_mesh(surface, bpy.data.meshes.new(surface.name))
-        _liken(surface, obj)
+        exchange_mesh(surface, bpy.data.meshes.new(surface.name))
+        liken(surface, obj)
     if was_kept:
         del _holder(scene)[KEPT]
     return was_kept
@@ -243,7 +243,7 @@ def _plain_value(value):
     return value if isinstance(value, (bool, int, float)) else tuple(value)
 
 
-def _surfaces(scene: bpy.types.Scene) -> dict[bpy.types.Object, bpy.types.Object]:
+def surfaces_of(scene: bpy.types.Scene) -> dict[bpy.types.Object, bpy.types.Object]:
     """The objects that show media in renders, by the media."""
     collection = _find_collection(scene)
     found = collection.objects if collection is not None else ()
@@ -256,7 +256,7 @@ def _holder(scene: bpy.types.Scene) -> bpy.types.Object | None:
     return next((obj for obj in collection.objects if PLAN in obj), None) if collection is not None else None
 
 
-def _exchange_mesh(surface: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
+def exchange_mesh(surface: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
     before, surface.data = surface.data, mesh
     bpy.data.meshes.remove(before)
 
@@ -270,7 +270,7 @@ def _exchange_tree(modifier: bpy.types.NodesModifier, tree: bpy.types.NodeTree) 
 
 def show_strays() -> None:
     """Let renders show media that are hidden in favour of surfaces that are not there."""
-    shown = {obj for scene in bpy.data.scenes for obj in _surfaces(scene)}
+    shown = {obj for scene in bpy.data.scenes for obj in surfaces_of(scene)}
     for obj in bpy.data.objects:
         if obj not in shown:
             _unhide(obj)
@@ -286,19 +286,21 @@ _CONCERNED = (
 
 
 def concerns(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> bool:
-    """Tell whether an update may change which media of a scene that is cut cross, or how they are shown. To select does not."""
+    """Tell whether an update may change which media of a scene that is cut cross, or how they are shown. To select does not, nor
+    do cut surfaces that follow.
+    """
     if not is_cut(scene):
         return is_shown(scene)
     known = _last.get(scene.session_uid)
-    return (
-        known is None
-        or known[1] != _settings(scene)
-        or any(
-            isinstance(update.id, _CONCERNED)
-            and (update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading)
-            for update in depsgraph.updates
-        )
-    )
+    if known is None or known[1] != _settings(scene):
+        return True
+    changed = {
+        update.id.original
+        for update in depsgraph.updates
+        if isinstance(update.id, _CONCERNED)
+        and (update.is_updated_geometry or update.is_updated_transform or update.is_updated_shading)
+    }
+    return bool(changed) and not changed <= {each for surface in surfaces_of(scene).values() for each in (surface, surface.data)}
 
 
 # Showing ------------------------------------------------------------------------------------------------------------
@@ -356,7 +358,7 @@ def _show(scene: bpy.types.Scene, plan: Plan) -> None:
         surface = surfaces[obj]
         source = parts[number // PART] if parts else holder
         _set_inputs(surface.modifiers[0], {OWN_INPUT: obj, CUT_INPUT: source, BODY_INPUT: number})
-        _liken(surface, obj)
+        liken(surface, obj)
         if HIDDEN_BY_CUT not in obj:
             obj[HIDDEN_BY_CUT] = True
         if not obj.hide_render:
@@ -480,14 +482,14 @@ def _new_surface(
     return surface
 
 
-def _liken(surface: bpy.types.Object, obj: bpy.types.Object) -> None:
+def liken(surface: bpy.types.Object, obj: bpy.types.Object) -> None:
     """Make a render treat the surface as the medium itself."""
     animated = {curve.data_path for curve in curves(obj.animation_data)}
     for owner, source, names in ((surface, obj, ALIKE), (surface.cycles, obj.cycles, ALIKE_IN_CYCLES)):
         for name in names:
             if name not in owner.bl_rna.properties:
                 continue
-            value = getattr(source, name)
+            value = rays.is_seen(obj, name) if name in rays.SETTINGS else getattr(source, name)
             before = getattr(owner, name)
             if value != before and (isinstance(value, (bool, int, float, str)) or tuple(value) != tuple(before)):
                 setattr(owner, name, value)
@@ -542,6 +544,7 @@ def _linking_collections() -> set[bpy.types.Collection]:
 
 def _unhide(obj: bpy.types.Object) -> None:
     if HIDDEN_BY_CUT in obj:
+        rays.show(obj)
         del obj[HIDDEN_BY_CUT]
         obj.hide_render = False
 

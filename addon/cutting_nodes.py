@@ -53,7 +53,10 @@ PART_GROUP = "Nested Dielectric Cut Part"
 SURFACE_GROUP = "Nested Dielectric Cut Surface"
 KEPT_GROUP = "Nested Dielectric Cut Kept"
 BODY_GROUP = "Nested Dielectric Cut Body"
+BOOLEAN_GROUP = "Nested Dielectric Cut Boolean"
 CUT_GROUP = "Nested Dielectric Cut"
+
+CUBE_FACES = 6
 
 OWN_INPUT, CUT_INPUT, BODY_INPUT, END_INPUT = "Medium", "Cut", "Body", "End"
 FRAME_INPUT = "Frame"
@@ -232,17 +235,29 @@ class _Builder:
 
     def united(self, first, second) -> bpy.types.NodeSocket:
         """Two closed meshes as one."""
-        node = self.node("GeometryNodeMeshBoolean", properties={"operation": "UNION", "solver": "MANIFOLD"})
-        for geometry in (first, second):
-            self.put(node.inputs["Mesh 2"], geometry)
-        return node.outputs["Mesh"]
+        return self._combined("UNION", first, second)
 
     def less(self, geometry, other) -> bpy.types.NodeSocket:
         """A closed mesh without what is in another."""
-        node = self.node("GeometryNodeMeshBoolean", properties={"operation": "DIFFERENCE", "solver": "MANIFOLD"})
-        self.put(node.inputs["Mesh 1"], geometry)
-        self.put(node.inputs["Mesh 2"], other)
+        return self._combined("DIFFERENCE", geometry, other)
+
+    def _combined(self, operation: str, first, second) -> bpy.types.NodeSocket:
+        node = self.node("GeometryNodeGroup", properties={"node_tree": _ensure_boolean_tree(operation)})
+        for socket, geometry in zip(node.inputs, (first, second)):
+            self.put(socket, geometry)
+        return node.outputs[0]
+
+    def solved(self, operation: str, solver: str, first, second) -> bpy.types.NodeSocket:
+        """What a solver makes of two meshes."""
+        node = self.node("GeometryNodeMeshBoolean", properties={"operation": operation, "solver": solver})
+        for name, geometry in zip(("Mesh 1" if operation == "DIFFERENCE" else "Mesh 2", "Mesh 2"), (first, second)):
+            self.put(node.inputs[name], geometry)
         return node.outputs["Mesh"]
+
+    def face_count(self, geometry) -> bpy.types.NodeSocket:
+        """How many faces a mesh has."""
+        node = self.node("GeometryNodeAttributeDomainSize", properties={"component": "MESH"}, Geometry=geometry)
+        return node.outputs["Face Count"]
 
     def faces(self, geometry, selection) -> bpy.types.NodeSocket:
         """The faces of a mesh that are selected."""
@@ -334,6 +349,28 @@ def ensure_kept_tree() -> bpy.types.NodeTree:
     build.put(_input(then, "B"), build.inputs.outputs[FRAME_INPUT])
     _input(then, "Epsilon").default_value = 1e-3
     build.returns(Geometry=build.switch(then.outputs[0], shown, build.inputs.outputs["Geometry"]))
+    return tree
+
+
+def _ensure_boolean_tree(operation: str) -> bpy.types.NodeTree:
+    """Return the group that unites two closed meshes, or takes the second from the first.
+
+    Builds of Blender without the Manifold library leave the first as it is: a small cube tells, and the exact solver, which
+    takes five times as long, does the work.
+    """
+    name = f"{BOOLEAN_GROUP} {operation.title()}"
+    tree = _find_tree(name)
+    if tree is not None:
+        return tree
+    inputs = dict.fromkeys(("First", "Second"), "NodeSocketGeometry")
+    tree = _new_tree(name, inputs, GEOMETRY, "Two closed meshes as one, or the first without the second")
+    build = _Builder(tree)
+    cube = build.node("GeometryNodeMeshCube").outputs["Mesh"]
+    moved = build.node("GeometryNodeTransform", Geometry=cube, Translation=(0.5, 0.5, 0.5)).outputs[0]
+    faces = build.face_count(build.solved("DIFFERENCE", "MANIFOLD", cube, moved))
+    bodies = [build.inputs.outputs[name] for name in inputs]
+    quick, exact = (build.solved(operation, solver, *bodies) for solver in ("MANIFOLD", "EXACT"))
+    build.returns(Geometry=build.switch(build.compare(faces, "GREATER_THAN", CUBE_FACES), exact, quick))
     return tree
 
 
@@ -530,12 +567,8 @@ def make_cut_tree(plan: Plan) -> bpy.types.NodeTree:
 def _is_sound(build: _Builder, closed: Sequence[bpy.types.NodeSocket], cut, raw) -> bpy.types.NodeSocket:
     """Whether everything was closed, and the solver has returned something of it; else all media ask."""
 
-    def faces(geometry):
-        node = build.node("GeometryNodeAttributeDomainSize", properties={"component": "MESH"}, Geometry=geometry)
-        return node.outputs["Face Count"]
-
-    some = build.compare(faces(cut), "GREATER_THAN", 0)
-    none = build.compare(faces(raw), "EQUAL", 0)
+    some = build.compare(build.face_count(cut), "GREATER_THAN", 0)
+    none = build.compare(build.face_count(raw), "EQUAL", 0)
     return build.all_of([*closed, build.all_of((some, none), "OR")])
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-RAY_KINDS = ("camera", "diffuse", "glossy", "transmission", "volume_scatter", "shadow")
-"""Kinds of rays that an object may be hidden from."""
+from .rays import is_seen_by_all
 
 _OPAQUE = {
     "ShaderNodeBsdfDiffuse",
@@ -22,11 +21,6 @@ _OPAQUE = {
     "ShaderNodeMixShader",
 }
 """Nodes with a shader as output behind which every ray ends, or which pass on what is plugged in."""
-
-
-def is_seen_by_all(obj: bpy.types.Object) -> bool:
-    """Whether rays of all kinds meet an object."""
-    return all(getattr(obj, f"visible_{ray}") for ray in RAY_KINDS)
 
 
 def sends_light_on(obj: bpy.types.Object) -> bool:

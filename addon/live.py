@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 import bpy
 
-from . import analysis, backends, changes, cutting
+from . import analysis, backends, changes, cutting, views
 from .identity import NO_SCENE, known_number
 from .lights import update_lights
 from .lookups import unchanged_nodes
@@ -20,13 +20,13 @@ from .trees import mend_nodes
 REST = 0.3
 """Seconds without a change after which a scene in a window is analysed."""
 
+GLANCE = 0.1
+"""Seconds after a viewport is drawn until what it shows of cut surfaces is looked at: drawing may change nothing."""
+
 ANALYSIS, CUTTING, BODIES = "analysis", "cutting", "bodies"
 
 _done: dict[int, tuple[changes.State, set[str]]] = {}
 """What scenes were like when something was last done for them and what that was, by the session's numbers of the scenes."""
-
-_follows = True
-"""Whether handlers look at what an update changes."""
 
 
 def analyse(scene: bpy.types.Scene) -> analysis.Found:
@@ -39,6 +39,13 @@ def analyse(scene: bpy.types.Scene) -> analysis.Found:
     return _analyse(scene)
 
 
+_drawing: object | None = None
+"""What Blender calls when it draws a viewport."""
+
+_follows = True
+"""Whether handlers look at what an update changes."""
+
+
 @contextmanager
 def _writing(scene: bpy.types.Scene, looks: bool) -> Iterator[set[str]]:
     """Yield what has been done for a scene since it was last changed, to be added to. What is written in the block is no change.
@@ -48,7 +55,7 @@ def _writing(scene: bpy.types.Scene, looks: bool) -> Iterator[set[str]]:
     :param looks: the block looks at the scene itself if it was changed, so that no handler has to.
     """
     global _follows
-    outer, _follows = _follows, not looks
+    outer, _follows = _follows, _follows and not looks
     try:
         scene.view_layers[0].update()
         _follows = False
@@ -65,18 +72,27 @@ def _writing(scene: bpy.types.Scene, looks: bool) -> Iterator[set[str]]:
 
 def install() -> None:
     """Put the handlers in; a second call changes nothing."""
+    global _drawing
     for handlers, handler in _handlers():
         if handler not in handlers:
             handlers.append(handler)
+    if _drawing is None and has_window():
+        _drawing = bpy.types.SpaceView3D.draw_handler_add(look_at_views_soon, (), "WINDOW", "POST_PIXEL")
 
 
 def remove() -> None:
-    """Take the handlers and the timer out."""
+    """Take the handlers and the timers out; viewports show the artist's own objects again."""
+    global _drawing
     for handlers, handler in _handlers():
         while handler in handlers:
             handlers.remove(handler)
     _done.clear()
-    stop_timer()
+    stop_timers()
+    if _drawing is not None:
+        bpy.types.SpaceView3D.draw_handler_remove(_drawing, "WINDOW")
+        _drawing = None
+    for scene in _cut_scenes():
+        views.show(scene, False)
 
 
 def _handlers() -> tuple[tuple[list, Callable], ...]:
@@ -85,6 +101,7 @@ def _handlers() -> tuple[tuple[list, Callable], ...]:
         (handlers.render_init, analyse_before_render),
         (handlers.render_pre, come_last),
         (handlers.frame_change_post, analyse_after_frame_change),
+        (handlers.depsgraph_update_pre, hold_before_update),
         (handlers.depsgraph_update_post, analyse_after_update),
         (handlers.load_post, distrust_loaded),
         (handlers.blend_import_post, show_strays),
@@ -153,9 +170,16 @@ def update_cut(scene: bpy.types.Scene) -> cutting.Cut:
 
 
 def _update_cut(scene: bpy.types.Scene, done: set[str]) -> cutting.Cut:
+    views.let_go(scene)
     found = cutting.cut_surfaces(scene, scripted=any(frame_scripts()))
     done.add(CUTTING)
+    _show_in_views(scene)
     return found
+
+
+def _show_in_views(scene: bpy.types.Scene) -> None:
+    windows = bpy.context.window_manager.windows if has_window() else ()
+    views.show(scene, scene in views.lit_scenes(windows), windows)
 
 
 def keep_cut(scene: bpy.types.Scene) -> str:
@@ -266,7 +290,8 @@ def mend_nodes_of(changed: Iterable[bpy.types.ID]) -> None:
 
 
 def _wait_for_rest() -> None:
-    stop_timer()
+    if bpy.app.timers.is_registered(analyse_at_rest):
+        bpy.app.timers.unregister(analyse_at_rest)
     bpy.app.timers.register(analyse_at_rest, first_interval=REST)
 
 
@@ -274,33 +299,84 @@ def analyse_at_rest() -> float | None:
     """Analyse what has changed in windows, or return the seconds to wait before another call."""
     if is_at_work():
         return REST
-    for scene in filter(analysis.is_distrusted, _analysed_scenes()):
-        _analyse(scene)
-    for scene in _cut_scenes():
-        update_cut(scene)
-    for scene in {*_analysed_scenes(), *_cut_scenes()}:
-        backends.choose(scene)
+    with _writing_for_windows():
+        for scene in filter(analysis.is_distrusted, _analysed_scenes()):
+            _analyse(scene)
+        for scene in _cut_scenes():
+            update_cut(scene)
+        for scene in {*_analysed_scenes(), *_cut_scenes()}:
+            backends.choose(scene)
     return None
 
 
-def stop_timer() -> None:
-    """Do not analyse at rest any more."""
-    if bpy.app.timers.is_registered(analyse_at_rest):
-        bpy.app.timers.unregister(analyse_at_rest)
+@contextmanager
+def _writing_for_windows() -> Iterator[None]:
+    """Let what is written in the block, and what follows from it in windows, be no change that has to be followed."""
+    global _follows
+    layers = [window.view_layer for window in bpy.context.window_manager.windows]
+    for layer in layers:
+        layer.update()
+    _follows = False
+    try:
+        yield
+        for layer in layers:
+            layer.update()
+    finally:
+        _follows = True
+
+
+def stop_timers() -> None:
+    """Analyse nothing at rest, and look at no viewport, any more."""
+    for timer in (analyse_at_rest, look_at_views):
+        if bpy.app.timers.is_registered(timer):
+            bpy.app.timers.unregister(timer)
 
 
 def is_at_work() -> bool:
     """Whether the mouse transforms or shapes something, an animation plays, or a picture is rendered."""
-    windows = bpy.context.window_manager.windows
-    return (
-        bpy.app.is_job_running("RENDER")
-        or any(window.screen.is_animation_playing for window in windows)
-        or any(
-            operator.bl_idname.startswith(("TRANSFORM_OT_", "SCULPT_OT_"))
-            for window in windows
-            for operator in window.modal_operators
-        )
+    return bpy.app.is_job_running("RENDER") or _plays() or _is_shaping()
+
+
+def _plays() -> bool:
+    return any(window.screen.is_animation_playing for window in bpy.context.window_manager.windows)
+
+
+def _is_shaping() -> bool:
+    return any(
+        operator.bl_idname.startswith(("TRANSFORM_OT_", "SCULPT_OT_"))
+        for window in bpy.context.window_manager.windows
+        for operator in window.modal_operators
     )
+
+
+def look_at_views_soon() -> None:
+    """See to it that what a viewport shows that is drawn is right."""
+    if not bpy.app.timers.is_registered(look_at_views):
+        bpy.app.timers.register(look_at_views, first_interval=GLANCE)
+
+
+def look_at_views() -> float | None:
+    """Let viewports show cut surfaces or the artist's objects, or return the seconds to wait before another call."""
+    if bpy.app.is_job_running("RENDER"):
+        return REST
+    with _writing_for_windows():
+        for scene in _cut_scenes():
+            _show_in_views(scene)
+    return None
+
+
+@bpy.app.handlers.persistent
+def hold_before_update(scene: bpy.types.Scene, *_: object) -> None:
+    """Cut nothing anew for viewports while changes follow on each other, as the mouse drags or a button is held: to cut may take
+    seconds.
+    """
+    if not _follows or not has_window() or not in_main_thread() or _plays() or not cutting.is_cut(scene):
+        return
+    if not _is_shaping() and not bpy.app.timers.is_registered(analyse_at_rest):
+        return
+    for window in bpy.context.window_manager.windows:
+        if window.scene == scene:
+            views.hold(scene, window.view_layer)
 
 
 @bpy.app.handlers.persistent
@@ -346,3 +422,5 @@ def forget_shapes(*_: object) -> None:
     """Undoing changes meshes without an update that names them."""
     analysis.forget_shapes()
     _done.clear()
+    if has_window() and _cut_scenes():
+        _wait_for_rest()

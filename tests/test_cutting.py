@@ -653,6 +653,33 @@ def test_objects_that_come_go_and_are_renamed_are_followed_by_the_next_preparati
     assert not [tree for tree in bpy.data.node_groups if "Cut" in tree.name]
 
 
+def faces_of(obj: bpy.types.Object) -> dict[float, int]:
+    """How many faces of a medium's surface carry what."""
+    surface = surface_of(obj)
+    surface.hide_viewport = False
+    bpy.context.view_layer.update()
+    mesh = surface.evaluated_get(bpy.context.evaluated_depsgraph_get()).data
+    values = np.zeros(len(mesh.polygons), dtype=np.float32)
+    mesh.attributes["nd_cut"].data.foreach_get("value", values)
+    surface.hide_viewport = True
+    return dict(zip(*(each.tolist() for each in np.unique(values, return_counts=True))))
+
+
+@pytest.mark.quick
+def test_a_blender_without_the_manifold_library_cuts_too():
+    """There that solver returns its first mesh as it is, as a node that is muted does."""
+    ball, block = two_bodies()
+    nd.prepare(now(), cut=True)
+    expected = [faces_of(body) for body in (ball, block)]
+    assert len(expected[0]) == 2
+    for tree in bpy.data.node_groups:
+        for node in tree.nodes:
+            if node.bl_idname == "GeometryNodeMeshBoolean" and node.solver == "MANIFOLD":
+                node.mute = True
+    for body, before in zip((ball, block), expected):
+        assert faces_of(body) == before
+
+
 # How renders treat objects ------------------------------------------------------------------------------------------
 
 
