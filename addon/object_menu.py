@@ -8,7 +8,7 @@ import bpy
 
 from .lights import LOBE, RAYS
 from .operators import AddPasses, DispersionModel, LampCarrier, SellmeierIor, ShadowCaustics, Spectrum, UpdateMaterials
-from .preparation_operators import ClearAnalysis, CutSurfaces, KeepCut, Prepare, PutBack
+from .preparation_operators import ClearAnalysis, CutSurfaces, KeepCut, Prepare, PutBack, RenderWith
 from .preferences import FIT, MEASURED
 from .preset_menus import PresetMenu
 from .preset_operators import FitDepth, SavePreset
@@ -41,6 +41,7 @@ class ObjectMenu(bpy.types.Menu):
         layout.operator(SelectObjects.bl_idname, text="Select Objects of Medium")
         layout.separator()
         layout.operator(Prepare.bl_idname)
+        layout.operator_menu_enum(RenderWith.bl_idname, "backend")
         layout.operator(CutSurfaces.bl_idname)
         layout.operator(KeepCut.bl_idname, text="Keep Cut in File")
         layout.operator(PutBack.bl_idname, text="Put Back what Prepare Changed")
