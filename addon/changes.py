@@ -56,7 +56,7 @@ def state_of(scene: bpy.types.Scene) -> State:
         _counted,
         (scene.frame_current, scene.frame_subframe),
         (render.use_simplify, render.use_motion_blur, render.motion_blur_shutter > 0.0),
-        (scene.cycles.shading_system, scene.cycles.device),
+        (render.engine, scene.cycles.device, scene.cycles.shading_system),
         {key: plain(scene[key]) for key in scene.keys() if key.startswith("nd_") and key != REPORT_PROPERTY},
         *(len(each) for each in (bpy.data.scenes, bpy.data.collections, bpy.data.materials, bpy.data.node_groups)),
         [(each.name, [obj.session_uid for obj in each.objects]) for each in scene.view_layers],

@@ -233,6 +233,50 @@ def test_what_has_changed_is_looked_at_before_a_render(change, looks):
     assert looks == ["analyse", "cut_surfaces"]
 
 
+def test_of_data_that_cycles_keeps_nothing_is_evaluated_again():
+    """Neither media nor what is cut of them: only the settings of the scene have changed."""
+    scene = build_scene()
+    bpy.data.objects["Fluid"].location.x = 2.8
+    scene.render.use_persistent_data = True
+    nd.prepare(scene, cut=True)
+    updates: list[set[str]] = []
+
+    def watch(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+        if depsgraph.mode == "RENDER":
+            updates.append({update.id.name for update in depsgraph.updates})
+
+    watch.__module__ = live.__name__  # a script that may change anything is another matter
+    bpy.app.handlers.frame_change_post.append(watch)
+    try:
+        pictures = [render(4) for _ in range(2)]
+    finally:
+        bpy.app.handlers.frame_change_post.remove(watch)
+    assert "Fluid (cut)" in updates[0] and updates[1] <= {"Scene"}
+    assert np.array_equal(*pictures)
+
+
+@pytest.mark.quick
+def test_media_are_tied_to_frames_in_files_and_where_scripts_run(tmp_path):
+    scene = build_scene()
+    nd.prepare(scene)
+    node = node_group.find_group().nodes[node_group.FRAME_NODE]
+    assert node.attribute_name == node_group.FRAME_PATH
+    file = str(tmp_path / "scene.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=file)
+    assert node.attribute_name == node_group.FRAME_PATH
+    bpy.app.handlers.frame_change_post.append(move_object)
+    try:
+        nd.analyse(scene)
+        assert node.attribute_name == node_group.TIMED_FRAME_PATH
+    finally:
+        bpy.app.handlers.frame_change_post.remove(move_object)
+    nd.analyse(scene)
+    assert node.attribute_name == node_group.FRAME_PATH
+    live.remove()
+    bpy.ops.wm.open_mainfile(filepath=file, load_ui=False)
+    assert node_group.find_group().nodes[node_group.FRAME_NODE].attribute_name == node_group.TIMED_FRAME_PATH
+
+
 @pytest.fixture
 def script(request):
     """A handler that changes the scene on every frame."""
