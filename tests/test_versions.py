@@ -54,7 +54,7 @@ def own_data() -> dict[str, list[str]]:
 PARTS = {
     f".Nested Dielectric Native {part}".rstrip()
     for part in ("", "Coefficients", "Surroundings", "Light", "Weights", "Tangents", "Stretched", "Glass", "Special", "Spread",
-                 "Dispersing")
+                 "Dispersing", "Preview")
 }
 
 ONE_OF_EACH = {
