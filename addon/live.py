@@ -225,7 +225,10 @@ def analyse_at_rest() -> float | None:
         for scene in filter(analysis.is_distrusted, _analysed_scenes()):
             _analyse(scene)
         for scene in _cut_scenes():
-            update_cut(scene)
+            if views.is_edited(scene):
+                views.let_go(scene)
+            else:
+                update_cut(scene)
     return None
 
 
