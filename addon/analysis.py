@@ -50,6 +50,7 @@ from .node_group import (
     SLOTS_SOCKET,
     SURROUNDINGS_COLOR_SOCKET,
     SURROUNDINGS_SOCKET,
+    TOLD_SCENE,
     VOLUME_OUTPUT,
     follow_frames,
     has_analysis,
@@ -205,7 +206,8 @@ def clear_analysis(scene: bpy.types.Scene) -> None:
     What another analysed scene shares with it asks there too until that one is analysed again.
     """
     scene.pop(ANALYSED, None)
-    scene.pop(CENTRE, None)
+    for name in (CENTRE, TOLD_SCENE):
+        scene.pop(name, None)
     _of(scene).survey = None
     number = known_number(scene)
     for material in bpy.data.materials:
@@ -238,6 +240,17 @@ def trust(scene: bpy.types.Scene, every_frame: bool) -> None:
     _set_validity(scene, _Validity(validity.holds, frame, float(every_frame)))
     analysed = [each for each in bpy.data.scenes if is_analysed(each) and each.library is None]
     follow_frames(not all(_validity(each).every_frame for each in analysed))
+
+
+def tell_natives(scene: bpy.types.Scene, tell: bool) -> None:
+    """Let Cycles' own nodes believe what the media of an analysed scene are told, on every frame, or show the alarm."""
+    number = scene_number(scene) if tell else None
+    if scene.get(TOLD_SCENE) != number:
+        if tell:
+            scene[TOLD_SCENE] = number
+        else:
+            del scene[TOLD_SCENE]
+        scene.update_tag()
 
 
 def distrust(scene: bpy.types.Scene) -> None:
@@ -347,6 +360,7 @@ def _look(survey: _Survey) -> Found:
     _tell(survey, told)
     _tell_centre(survey)
     known.survey, known.found = survey, _found(survey, told)
+    tell_natives(survey.scene, True)
     _forget_unused()
     _set_validity(survey.scene, _Validity(1.0, _frame(survey.scene), _validity(survey.scene).every_frame))
     return known.found

@@ -177,6 +177,18 @@ def _update_cut(scene: bpy.types.Scene, done: set[str]) -> cutting.Cut:
     return found
 
 
+def choose_bodies(scene: bpy.types.Scene) -> backends.Chosen:
+    """Let each material of a scene be rendered by the body that is right for it; return what was found."""
+    with _writing(scene, looks=False) as done:
+        return _choose_bodies(scene, done)
+
+
+def _choose_bodies(scene: bpy.types.Scene, done: set[str]) -> backends.Chosen:
+    chosen = backends.choose(scene)
+    done.add(BODIES)
+    return chosen
+
+
 def _show_in_views(scene: bpy.types.Scene) -> None:
     windows = bpy.context.window_manager.windows if has_window() else ()
     views.show(scene, scene in views.lit_scenes(windows), windows)
@@ -226,8 +238,7 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
         if is_cut and CUTTING not in done:
             _update_cut(scene, done)
         if BODIES not in done:
-            backends.choose(scene)
-            done.add(BODIES)
+            _choose_bodies(scene, done)
 
 
 @bpy.app.handlers.persistent
@@ -258,7 +269,7 @@ def analyse_after_frame_change(scene: bpy.types.Scene, depsgraph: bpy.types.Deps
         _wait_for_rest()
         return
     _analyse(scene)
-    backends.choose(scene)
+    choose_bodies(scene)
 
 
 @bpy.app.handlers.persistent
@@ -303,9 +314,12 @@ def analyse_at_rest() -> float | None:
         for scene in filter(analysis.is_distrusted, _analysed_scenes()):
             _analyse(scene)
         for scene in _cut_scenes():
-            update_cut(scene)
+            if views.is_edited(scene):
+                views.let_go(scene)
+            else:
+                update_cut(scene)
         for scene in {*_analysed_scenes(), *_cut_scenes()}:
-            backends.choose(scene)
+            choose_bodies(scene)
     return None
 
 
@@ -404,10 +418,13 @@ def narrow_before_save(*_: object) -> None:
         if analysis.is_distrusted(scene):
             analysis.analyse(scene)
         analysis.trust(scene, every_frame=False)
+        analysis.tell_natives(scene, not any(frame_scripts()))
     for scene in _cut_scenes():
         update_cut(scene)
     for scene in {*_analysed_scenes(), *_cut_scenes()}:
-        backends.choose(scene)
+        choose_bodies(scene)
+        if any(frame_scripts()):
+            backends.let_ask(scene)
 
 
 @bpy.app.handlers.persistent
@@ -415,6 +432,9 @@ def widen_after_save(*_: object) -> None:
     """Go on as before."""
     for scene in _analysed_scenes():
         _trust(scene)
+        analysis.tell_natives(scene, True)
+    for scene in {*_analysed_scenes(), *_cut_scenes()} if any(frame_scripts()) else ():
+        choose_bodies(scene)
 
 
 @bpy.app.handlers.persistent

@@ -88,6 +88,11 @@ _LIGHTS_OUTPUTS = LAMP_OUTPUTS | {EMITTER_OUTPUT: "SHADER", LAMPS_OUTPUT: "INT"}
 ANALYSED = "nd_analysed"
 """Custom property of a scene whose media are kept analysed: what holds of its analysis, :class:`Validity`."""
 
+TOLD_SCENE = "nd_told"
+"""Another: its number, where what media were told holds on every frame as far as anybody knows. Cycles' own nodes go by it: they
+cannot ask where it does not.
+"""
+
 CUT = "nd_cut"
 """Custom property of a scene that shows surfaces which are cut where media cross, and attribute of the faces of those."""
 
@@ -586,6 +591,10 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     links.new(analysis_holds, script.inputs["AnalysisHolds"])
     by_volume = math_node(tree, "COMPARE", scene, inputs.outputs[BY_VOLUME_SOCKET], 0.5)
     links.new(by_volume, script.inputs["ByVolume"])
+    chosen = inputs.outputs[NATIVE_SOCKET]
+    told_scene = view_layer_attribute(tree, f'["{TOLD_SCENE}"]').outputs["Fac"]
+    natives_by_volume = math_node(tree, "COMPARE", told_scene, inputs.outputs[BY_VOLUME_SOCKET], 0.5)
+    by_volume = lazily(tree, "FLOAT", chosen, by_volume, natives_by_volume)
     gives_back = math_node(tree, "MULTIPLY", inputs.outputs[GIVES_BACK_SOCKET], analysis_holds)
     links.new(gives_back, script.inputs["GivesBack"])
     cut = view_layer_attribute(tree, f'["{CUT}"]').outputs["Fac"]
@@ -613,11 +622,15 @@ def _add_nodes(tree: bpy.types.NodeTree, scripts: dict[str, Script]) -> None:
     known = (
         {name: inputs.outputs[name] for name in inputs.outputs.keys() if name}
         | menus
-        | {"Scene": scene, "Holds": analysis_holds, "By Volume": by_volume, "Cut": cut}
+        | {
+            "Scene": told_scene,
+            "Holds": math_node(tree, "COMPARE", told_scene, inputs.outputs[SCENE_SOCKET], 0.5),
+            "By Volume": by_volume,
+            "Cut": cut,
+        }
     )
     body = NativeBody()
     native = _add_part(tree, NATIVE_GROUP, body, known)
-    chosen = inputs.outputs[NATIVE_SOCKET]
     by_shader = mix_shaders(tree, script.outputs["Running"], native["Surface"], script.outputs["BSDF"])
     links.new(lazily(tree, "SHADER", chosen, by_shader, native["Surface"]), outputs.inputs[CYCLES_OUTPUT])
 

@@ -15,7 +15,7 @@ from .compatibility import NATIVE, OSL, achromatic_reason, get_backend, has_osl,
 from .cutting import Cut, is_set_to_cut, set_cut, show_whole
 from .cutting_plan import make_plan
 from .lights import update_lights
-from .live import analyse, frame_scripts, update_cut
+from .live import analyse, choose_bodies, frame_scripts, update_cut
 from .materials import refresh_spectrum
 from .media import all_objects, dispersing_materials, media
 from .parameters import ParameterError
@@ -138,7 +138,7 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
     changes += _ensure_random_time(scene, changed) if by_osl else _end_random_time(scene, changed)
     problems += coincident + find_problems(scene)
     cut = update_cut(scene)
-    chosen = backends.choose(scene)
+    chosen = choose_bodies(scene)
     problems += [Problem(need.name, need.reason, remedy) for need, remedy in backends.shortcomings(scene, cut, found)]
     return Preparation(tuple(stays + changes + parted), tuple(problems), found.without(cut.media), len(media(scene)), cut, chosen)
 

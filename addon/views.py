@@ -57,6 +57,11 @@ def show(scene: bpy.types.Scene, lit: bool, windows: Iterable[bpy.types.Window] 
         let_go(scene)
 
 
+def is_edited(scene: bpy.types.Scene) -> bool:
+    """Whether a medium that is cut is in Edit Mode. A render would not cut it; viewports go on as they are meanwhile."""
+    return any(obj.mode == "EDIT" for obj in cutting.surfaces_of(scene))
+
+
 def hold(scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> None:
     """Let viewports go on showing cut surfaces as they are, which move with their objects, and cut nothing anew."""
     if cutting.is_kept(scene):

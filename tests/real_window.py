@@ -14,21 +14,20 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import bpy
-import numpy as np
 
 package, folder, *shadings = sys.argv[sys.argv.index("--") + 1 :]
 sys.path.insert(0, package)
 
-SAMPLES = 12
+SAMPLES = 6
 """Of viewports."""
 
 SAME = 4
 """Pictures of a window that are the same one after another: nothing is drawn any more."""
 
-MOST = 240
+MOST = 120
 """Pictures after which one of them has to do."""
 
-SECONDS = 1.0
+SECONDS = 2.0
 """Between two pictures."""
 
 
@@ -46,7 +45,7 @@ def steps() -> Iterator[float]:
         last, same = None, 0
         for _ in range(MOST):
             picture = take(Path(folder, f"{shading.lower()}.png"))
-            same = same + 1 if last is not None and np.array_equal(last, picture) else 0
+            same = same + 1 if picture == last else 0
             if same == SAME:
                 break
             last = picture
@@ -58,20 +57,19 @@ def viewports() -> Iterator[bpy.types.SpaceView3D]:
     return (area.spaces.active for area in window.screen.areas if area.type == "VIEW_3D")
 
 
-def take(path: Path) -> np.ndarray:
-    """Save a picture of the screen, and return its pixels. On virtual screens Blender's own pictures may be black: ImageMagick's
-    are taken where it is there.
+def take(path: Path) -> bytes:
+    """Save a picture of the screen, and return what is written; to load it here would draw the window anew. On virtual screens
+    Blender's own pictures may be black: ImageMagick's are taken where it is there.
     """
+    part = path.with_suffix(".part.png")
     if shutil.which("import") and "DISPLAY" in os.environ:
-        subprocess.run(["import", "-window", "root", str(path)], check=True)
+        without_time = ["-strip", "-define", "png:exclude-chunks=date,time"]
+        subprocess.run(["import", "-window", "root", *without_time, str(part)], check=True)
     else:
         with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
-            bpy.ops.screen.screenshot(filepath=str(path))
-    image = bpy.data.images.load(str(path))
-    pixels = np.zeros(len(image.pixels), dtype=np.float32)
-    image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
-    return pixels
+            bpy.ops.screen.screenshot(filepath=str(part))
+    part.replace(path)
+    return path.read_bytes()
 
 
 def run(step: Callable[[], float]) -> float | None:

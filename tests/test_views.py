@@ -190,3 +190,14 @@ def test_which_viewports_show_materials(shading, playing, engine, lit):
     area = types.SimpleNamespace(type="VIEW_3D", spaces=types.SimpleNamespace(active=space))
     screen = types.SimpleNamespace(areas=[area], is_animation_playing=playing)
     assert (scene in views.lit_scenes([types.SimpleNamespace(scene=scene, screen=screen)])) == lit
+
+
+def test_in_edit_mode_viewports_go_on_showing_cut_surfaces(ball):
+    views.show(scene(), True)
+    bpy.context.view_layer.objects.active = ball
+    bpy.ops.object.mode_set(mode="EDIT")
+    live.analyse_at_rest()
+    assert surface().modifiers[0].show_viewport and not seen(ball)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    live.analyse_at_rest()
+    assert seen(surface()) == ALL
