@@ -412,19 +412,21 @@ def show_strays(*_: object) -> None:
 @bpy.app.handlers.persistent
 def narrow_before_save(*_: object) -> None:
     """Save what holds without the extension, too: on the present frame, as no one will see what scripts do on others."""
+    scripts = any(frame_scripts())
     for scene in _analysed_scenes():
-        if any(frame_scripts()):
+        if scripts:
             analysis.distrust(scene)
         if analysis.is_distrusted(scene):
             analysis.analyse(scene)
-        analysis.trust(scene, every_frame=False)
-        analysis.tell_natives(scene, not any(frame_scripts()))
     for scene in _cut_scenes():
         update_cut(scene)
     for scene in {*_analysed_scenes(), *_cut_scenes()}:
         choose_bodies(scene)
-        if any(frame_scripts()):
+        if scripts:
             backends.let_ask(scene)
+    for scene in _analysed_scenes():
+        analysis.trust(scene, every_frame=False)
+        analysis.tell_natives(scene, not scripts)
 
 
 @bpy.app.handlers.persistent
