@@ -197,11 +197,13 @@ def _may_hold_others(node: bpy.types.ShaderNodeGroup, objects: Iterable[bpy.type
 
 
 @unchanged_nodes()
-def choose(scene: bpy.types.Scene) -> Chosen:
+def choose(scene: bpy.types.Scene, scripted: bool = False) -> Chosen:
     """Write into the materials of a scene's media which body renders them; return what was chosen.
 
     All are rendered by Cycles' own nodes where the scene has no choice. Where it has, those media are left to the shader that
     need anything more, with all that they may meet or share a material with; and all media where one of them splits light.
+
+    :param scripted: a script may change any object on any frame, and while the shutter is open.
     """
     users = _users(scene)
     reasons: dict[bpy.types.Material, str] = {}
@@ -211,6 +213,8 @@ def choose(scene: bpy.types.Scene) -> Chosen:
         asking = tuple((need.name, need.reason) for need in _asking(users, cut, analysis.last_found(scene)))
     elif get_backend(scene) == OSL:
         reasons = dict.fromkeys(users, "as Render With says")
+    elif scripted:
+        reasons = dict.fromkeys(users, "may be changed by a script on any frame")
     elif users:
         reasons = _reasons(scene, users, find_needs(scene, cut, analysis.last_found(scene)))
     for material in users:
@@ -225,8 +229,20 @@ def choose(scene: bpy.types.Scene) -> Chosen:
 def let_ask(scene: bpy.types.Scene) -> None:
     """Leave all media of a scene to the shader until they are told again what surrounds them, if renders run it."""
     if not is_native(scene):
-        for material in _users(scene):
-            _tell(material, False)
+        _leave_to_shader(scene)
+
+
+def let_choose(scene: bpy.types.Scene) -> None:
+    """Leave all media of a scene to whichever body its renderer can run, unless that would be the wrong one: so whoever appends or
+    links them, or renders them elsewhere, finds media that can ask.
+    """
+    if not (is_native(scene) and scene.cycles.shading_system):
+        _leave_to_shader(scene)
+
+
+def _leave_to_shader(scene: bpy.types.Scene) -> None:
+    for material in _users(scene):
+        _tell(material, False)
 
 
 def _reasons(scene: bpy.types.Scene, users: Users, needs: Sequence[Need]) -> dict[bpy.types.Material, str]:

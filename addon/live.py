@@ -184,7 +184,7 @@ def choose_bodies(scene: bpy.types.Scene) -> backends.Chosen:
 
 
 def _choose_bodies(scene: bpy.types.Scene, done: set[str]) -> backends.Chosen:
-    chosen = backends.choose(scene)
+    chosen = backends.choose(scene, scripted=any(frame_scripts()))
     done.add(BODIES)
     return chosen
 
@@ -422,8 +422,7 @@ def narrow_before_save(*_: object) -> None:
         update_cut(scene)
     for scene in {*_analysed_scenes(), *_cut_scenes()}:
         choose_bodies(scene)
-        if scripts:
-            backends.let_ask(scene)
+        backends.let_choose(scene)
     for scene in _analysed_scenes():
         analysis.trust(scene, every_frame=False)
         analysis.tell_natives(scene, not scripts)
@@ -435,7 +434,7 @@ def widen_after_save(*_: object) -> None:
     for scene in _analysed_scenes():
         _trust(scene)
         analysis.tell_natives(scene, True)
-    for scene in {*_analysed_scenes(), *_cut_scenes()} if any(frame_scripts()) else ():
+    for scene in {*_analysed_scenes(), *_cut_scenes()}:
         choose_bodies(scene)
 
 
