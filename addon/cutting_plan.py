@@ -62,9 +62,11 @@ def make_plan(scene: bpy.types.Scene, scripted: bool = False, native: bool = Fal
     known = None if moving else _surroundings(scene, objects)
     touching = touching_media(objects, moving, known)
     whole = _needed_whole(scene, objects, touching)
-    for obj in whole - hindered.keys():
-        if any(_layer_of(other) == _layer_of(obj) for other in touching[obj]):
-            hindered[obj] = "overlaps another of its medium, and its surface is needed whole: it has colour, labels or other shaders"
+    melting = {obj for obj in objects if any(_layer_of(other) == _layer_of(obj) for other in touching[obj])}
+    for obj in (whole & melting) - hindered.keys():
+        hindered[obj] = "overlaps another of its medium, and its surface is needed whole: it has colour, labels or other shaders"
+    if native:  # volumes may have to take from shadow rays what media absorb
+        whole |= {obj for obj in objects if obj not in melting and may_absorb(medium_material(obj))}
     for obj in known or ():
         if known[obj].coincides:
             hindered.setdefault(obj, "has faces in the same place as another; press Prepare Scene, or let them overlap")

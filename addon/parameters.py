@@ -797,7 +797,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Splits bright patterns on other surfaces into colours, also those of shadow caustics",
         label="Dispersion",
         needs=("disperse",),
-        limit=Limit("split light that falls on other surfaces, too", alone=True, decides=False),
+        limit=replace(DISPERSION, decides=False),
     ),
     Parameter(
         "Caustic Direct Refraction",
