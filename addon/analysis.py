@@ -29,7 +29,7 @@ from .identity import NO_SCENE, known_number, scene_number
 from .lights import lamps
 from .lookups import unchanged_nodes
 from .materials import absorption_coefficients, dielectric_node, has_own_volume
-from .media import SOLID_TYPES, is_cut_surface, is_rendered, material_priority, media, own_priority
+from .media import CUT_SETTING, SOLID_TYPES, is_cut_surface, is_rendered, material_priority, media, own_priority
 from .native_nodes import CENTRE, LARGEST_EXPONENT
 from .node_group import (
     AIR_AROUND,
@@ -1045,11 +1045,12 @@ def _common(outsides: Iterable[Outside]) -> Outside | None:
 
 
 def _most_slots() -> dict[bpy.types.Material, int]:
-    """Of all objects of each material; many where modifiers may make more. A cut surface has the slots of its medium."""
+    """Of all objects of each material; many where modifiers may make more, as those of cut surfaces do."""
     most: dict[bpy.types.Material, int] = {}
+    may_be_cut = any(scene.get(CUT_SETTING) for scene in bpy.data.scenes)
     for obj in itertools.filterfalse(is_cut_surface, bpy.data.objects):
         count = len(obj.material_slots)
-        if any(modifier.type in ("NODES", "BOOLEAN") and not keeps_mesh(modifier) for modifier in obj.modifiers):
+        if may_be_cut or any(modifier.type in ("NODES", "BOOLEAN") and not keeps_mesh(modifier) for modifier in obj.modifiers):
             count = MATERIAL_SLOTS
         for slot in obj.material_slots:
             most[slot.material] = max(most.get(slot.material, 0), count)

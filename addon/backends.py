@@ -148,6 +148,17 @@ def _asking(users: Users, cut: Cut, found: Found | None) -> Iterator[Need]:
             yield Need(obj.name, material.name, reason, True)
 
 
+def _changing(users: Users, cut: Cut, found: Found | None) -> Iterator[Need]:
+    """Media that are cut on each frame as they are then: on some their meshes may not be closed, and nothing can be cut."""
+    changes = found is None or found.doubts or any(any(curves(material.node_tree.animation_data)) for material in users)
+    media = set(cut.media) if changes else ()
+    for material, objects in users.items():
+        for obj in objects:
+            if obj.name in media:
+                yield Need(material.name, material.name, "may change or open up on some frame, and then must ask")
+                break
+
+
 def _limits(
     scene: bpy.types.Scene, material: bpy.types.Material, objects: Sequence[bpy.types.Object], circumstances: dict[str, bool]
 ) -> Iterator[Need]:
@@ -216,7 +227,8 @@ def choose(scene: bpy.types.Scene, scripted: bool = False) -> Chosen:
     elif scripted:
         reasons = dict.fromkeys(users, "may be changed by a script on any frame")
     elif users:
-        reasons = _reasons(scene, users, find_needs(scene, cut, analysis.last_found(scene)))
+        found = analysis.last_found(scene)
+        reasons = _reasons(scene, users, [*find_needs(scene, cut, found), *_changing(users, cut, found)])
     for material in users:
         _tell(material, material not in reasons)
     native = tuple(material.name for material in users if material not in reasons)

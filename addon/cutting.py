@@ -38,7 +38,7 @@ from .cutting_nodes import (
 )
 from .cutting_plan import Cut, is_in_use, make_plan
 from .materials import dielectric_node
-from .media import CUT_OF, HIDDEN_BY_CUT
+from .media import CUT_OF, CUT_SETTING, HIDDEN_BY_CUT
 from .native_nodes import TELLS_COLOUR, TELLS_DISPERSION
 from .node_group import CUT, VERSION_PROPERTY
 from .shapes import content_of
@@ -49,9 +49,6 @@ SUFFIX = " (cut)"
 
 HOLDER = "all"
 """In place of a medium: an object that shows none."""
-
-CUT_SETTING = "nd_cut_surfaces"
-"""Custom property of a scene: whether its surfaces are to be cut."""
 
 PLAN = "nd_plan"
 """Custom property of the object that cuts: what its nodes were made from."""

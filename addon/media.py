@@ -23,6 +23,9 @@ SOLID_TYPES = frozenset(("MESH", "CURVE", "SURFACE", "FONT", "META"))
 CUT_OF = "nd_cut_of"
 """Custom property of an object that shows another's surface in renders, cut where media cross: that other one."""
 
+CUT_SETTING = "nd_cut_surfaces"
+"""Custom property of a scene: whether its surfaces are to be cut."""
+
 HIDDEN_BY_CUT = "nd_cut"
 """Custom property of a medium that is hidden from renders because such an object shows it."""
 

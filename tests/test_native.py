@@ -1,6 +1,7 @@
 """The body of Cycles' own nodes: the same light as the shader's, and as closed forms and interfaces split by hand have it."""
 
-import bpy
+import bpy  # before bmesh, which lives inside it
+import bmesh  # isort: skip
 import numpy as np
 import pytest
 
@@ -18,7 +19,6 @@ from scenes import (
     batches,
     cycles_glass,
     diffuse,
-    emission,
     mostly_again,
     native,
     new_scene,
@@ -147,7 +147,15 @@ def test_both_bodies_are_as_anisotropic(keywords):
 @pytest.mark.parametrize("mode", mostly_again(["OUTSIDE_FRESNEL", "TRANSMISSION", "ALL_FRESNEL"]))
 def test_both_bodies_of_media_that_are_cut_take_the_same_from_light_and_shadows(tints, mode):
     pool(*tints, shadow_mode=mode)
-    assert_equal(*by_both())
+    if tints == ((1, 1, 1), (1, 1, 1)):
+        assert_equal(*by_both())
+        return
+    # Native media that absorb keep their surfaces inside winners, which draw random numbers of their own.
+    found = []
+    for on in (False, True):
+        set_native(on, osl=not on)
+        found.append(batches(1024, 16))
+    assert_same_picture(*found, size=8)
 
 
 def test_both_bodies_are_bumped_alike():
@@ -309,19 +317,24 @@ def test_without_osl_the_native_body_shows_whatever_was_chosen():
     assert np.array_equal(render(16), chosen)
 
 
-def test_a_surface_that_nobody_told_anything_shows_the_alarm_without_osl():
-    """And only then: two media that overlap, not cut, which the analysis cannot tell."""
+def test_a_surface_that_nobody_can_tell_anything_shows_the_alarm_without_osl():
+    """And only then: of two balls that overlap one is open, so nothing can be cut; closed, both are by themselves."""
     scene = new_scene(16)
     set_world()
     add_camera((0, -5, 0), (0, 0, 0), angle=20)
     for name, place in (("A", -0.4), ("B", 0.4)):
         add_sphere(name, 1.0, nd.new_material(name, ior=1.5, priority=0 if name == "A" else 1), location=(place, 0, 0))
+    scene.cycles.shading_system = False
+    whole = bpy.data.objects["A"].data.copy()
+    mesh = bmesh.new()
+    mesh.from_mesh(bpy.data.objects["A"].data)
+    bmesh.ops.delete(mesh, geom=list(mesh.faces)[:1], context="FACES")
+    mesh.to_mesh(bpy.data.objects["A"].data)
     nd.analyse(scene)
-    set_native(True, osl=False)
     red, green, blue = render(16).reshape(-1, 3).mean(axis=0)
     assert green < 0.3 * red and blue == pytest.approx(red, rel=0.2)
-    nd.prepare(scene, cut=True)
-    set_native(True, osl=False)
+    bpy.data.objects["A"].data = whole
+    nd.analyse(scene)
     assert np.abs(render(16) - 1.0).max() < 0.01
 
 
