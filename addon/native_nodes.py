@@ -14,7 +14,7 @@ from math import e
 
 import bpy
 
-from .contacts import AIR, MEDIUM, NEVER
+from .contacts import AIR, MEDIUM, NEVER, PROBE
 from .dispersion import LINE_C, LINE_D, LINE_F, jf_ior
 from .parameters import BY_NAME, DISPERSION_MODELS, PARAMETERS, UNLIMITED_REFLECTIONS
 from .shader_nodes import Number, Part, Socket, attribute, lazily, mix_values, plug, view_layer_attribute
@@ -29,6 +29,9 @@ is none volumes absorb of them.
 CUT_HIDDEN = 1e6
 CUT_SPLITS = 3.0
 """As in osl/cut.h."""
+
+_INDICES = 5000.0, 4999.995
+"""Middle and half of a range of numbers that faces with an index tell, and none with nothing to tell or hidden ones."""
 
 TELLS_COLOUR, TELLS_DISPERSION = 2.0, 3.0
 """What a scene's property of cut surfaces is from where faces tell the colour of media outside, and how they disperse."""
@@ -238,10 +241,14 @@ class Surroundings(NativePart):
         ior = self.choose(self.face_tells, by_analysis, abs(self.face).math("MINIMUM", 100.0) + self.face_offset)
         known = (self.outside > AIR - 0.5) * (self.outside < NEVER + 0.5)
         exists = self.choose(self.face_tells, 1.0 - self.outside.equals(NEVER), self.face < 0.5 * CUT_HIDDEN)
-        self.give("Known", "FLOAT", self.face_tells.math("MAXIMUM", known))
+        known = self.face_tells.math("MAXIMUM", known)
+        by_faces = self.surely(self.raw("Outside").equals(PROBE))
+        self.give("Known", "FLOAT", known)
         self.give("Exists", "FLOAT", exists)
+        self.give("Shows", "FLOAT", self.where(by_faces, known * exists, abs(self.face).math("COMPARE", *_INDICES)))
         self.give("Face", "FLOAT", self.face)
         self.give("In Air", "FLOAT", air)
+        ior = self.where(by_faces, ior, abs(self.face) + self.face_offset)
         self.give("Outer IOR", "FLOAT", self.where(beside, 1.0, ior))
         self.give("Outer Coefficients", "VECTOR", self.outer_coefficients)
         priority = Number(self.tree, attribute(self.tree, "GEOMETRY", "nd_cut_priority").outputs["Fac"])
@@ -664,11 +671,11 @@ class NativeBody(NativePart):
         dark = self.node("ShaderNodeBsdfTransparent")
         self.tree.links.new(light["Shadow"], dark.inputs["Color"])
         seen = self.mix(self.path["Is Shadow Ray"], self.add(self.body, self.emission), dark.outputs[0])
-        known, exists = (Number(self.tree, outside[name]) for name in ("Known", "Exists"))
-        valid = self.mix(exists, self.node("ShaderNodeBsdfTransparent").outputs[0], seen)
+        known, exists, shows = (Number(self.tree, outside[name]) for name in ("Known", "Exists", "Shows"))
         alarm = self.node("ShaderNodeBsdfDiffuse")
         alarm.inputs["Color"].default_value = (1.0, 0.0, 1.0, 1.0)
-        self.give("Surface", "SHADER", self.mix(known, alarm.outputs[0], valid))
+        other = self.mix(known, alarm.outputs[0], self.node("ShaderNodeBsdfTransparent").outputs[0])
+        self.give("Surface", "SHADER", self.mix(shows, other, seen))
         self.give("Shadow by Volume", "FLOAT", light["Shadow by Volume"])
         self.give("Surface Exists", "FLOAT", exists)
         self.give("Is Entrance", "FLOAT", exists * self.is_entrance)
@@ -685,8 +692,9 @@ class NativeBody(NativePart):
         # A medium of JF's that splits no light has its index as it was typed.
         offset = self.number("Dispersion") * jf_ior(0.0, 1.0, LINE_D) * self.raw("Dispersion Model").equals(2) * self.raw("Disperse")
         self.define("Own IOR", self.number("IOR") + offset)
-        self.define("Ratio", (self.raw("Own IOR") / self.raw("Outer IOR")).math("MAXIMUM", 1e-5))
-        self.define("Film IOR", self.number("Thin Film IOR") / self.raw("Outer IOR"))
+        self.define("Ratio", self.raw("Own IOR") / self.raw("Outer IOR"))
+        no_film = self.surely(self.number("Thin Film Thickness") < 1e-9)
+        self.define("Film IOR", self.where(no_film, self.number("Thin Film IOR") / self.raw("Outer IOR"), 1.0))
         own = self.call(coefficients, Depth=self.number("Transmittance Depth"))["Coefficients"]
         self.define("Own Coefficients", self.scaled(own, 1.0 - self.raw("By Volume")))
         # Where both indices are the same no half vector is defined.
