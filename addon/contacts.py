@@ -18,6 +18,7 @@ from . import meshes
 # What is known of the outside of a body: nothing (ask the scene); it is air; it is the known surrounding medium; a stronger
 # or equal medium wins there, so the surface never exists.
 PROBE, AIR, MEDIUM, NEVER = 0, 1, 2, 3
+BY_OBJECT = 5  # of a material: each of its objects has its own
 
 # Surfaces closer than this touch, in sizes of the smaller body.
 TOLERANCE = 1e-5

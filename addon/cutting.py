@@ -328,8 +328,9 @@ def _show(scene: bpy.types.Scene, plan: Plan) -> None:
     if not plan.layers:
         _clear(scene)
         return
-    if scene.get(CUT) != _tells(plan):
-        scene[CUT] = _tells(plan)
+    tells = _tells(plan)
+    if scene.get(CUT) != tells:
+        scene[CUT] = tells
         scene.update_tag()
     numbers = plan.numbers()
     collection = _ensure_collection(scene)

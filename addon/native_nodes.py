@@ -14,7 +14,8 @@ from math import e
 
 import bpy
 
-from .contacts import AIR, MEDIUM, NEVER, PROBE
+from .compatibility import NATIVE_DISPERSION_VERSION
+from .contacts import AIR, BY_OBJECT, MEDIUM, NEVER, PROBE
 from .dispersion import LINE_C, LINE_D, LINE_F, jf_ior
 from .parameters import BY_NAME, DISPERSION_MODELS, PARAMETERS, UNLIMITED_REFLECTIONS
 from .shader_nodes import Number, Part, Socket, attribute, lazily, mix_values, plug, view_layer_attribute
@@ -257,8 +258,8 @@ class Surroundings(NativePart):
 
     @cached_property
     def by_object(self) -> Number:
-        """Each object is told for itself: 5 in osl/outside.h."""
-        return self.raw("Outside").equals(5)
+        """Each object is told for itself."""
+        return self.raw("Outside").equals(BY_OBJECT)
 
     @cached_property
     def object_told(self) -> dict[str, Number]:
@@ -335,12 +336,15 @@ class _Light(NativePart):
         self.give("Shadow by Volume", "FLOAT", 1.0 - self.surfaces_absorb_shadows)
 
     def unless_clear(self, left: Socket) -> Socket:
-        """White where no colour is told on either side, and cannot be."""
-        low = self.split(self.socket("Transmittance"), node="Color").values()
-        red, green, blue = low
+        return lazily(self.tree, "VECTOR", self.clear.socket, left, (1.0, 1.0, 1.0))
+
+    @cached_property
+    def clear(self) -> Number:
+        """No colour is told on either side, and none can be."""
+        red, green, blue = self.split(self.socket("Transmittance"), node="Color").values()
         white = red.math("MINIMUM", green).math("MINIMUM", blue) > 1.0 - 1e-9
         white = white.math("MAXIMUM", 1.0 - (self.raw("Transmittance Depth") > 0.0))
-        return lazily(self.tree, "VECTOR", self.surely(white * self.alone).socket, left, (1.0, 1.0, 1.0))
+        return self.surely(white * self.alone)
 
     @cached_property
     def arrives(self) -> Socket:
@@ -353,7 +357,7 @@ class _Light(NativePart):
     @cached_property
     def surfaces_absorb_shadows(self) -> Number:
         """Nothing foreign stands in the media: then surfaces take from shadow rays what media absorb."""
-        by_object = self.raw("Outside").equals(5)
+        by_object = self.raw("Outside").equals(BY_OBJECT)
         told = self.raw("Holds") * (1.0 - self.raw("Foreign Objects")) * (1.0 - by_object)
         return told * (Number(self.tree, self.centre.outputs["Alpha"]) > 0.5)
 
@@ -707,7 +711,7 @@ class NativeBody(NativePart):
         """What is seen of the surface."""
         plain = self.call(_Glass())["BSDF"]
         ordinary = lazily(self.tree, "SHADER", self.surely(self.is_plain).socket, self.call(_Special())["BSDF"], plain)
-        if not _nodes_disperse():
+        if bpy.app.version < NATIVE_DISPERSION_VERSION:
             return ordinary
         dispersing = self.call(_Dispersing())
         splits = self.mix(Number(self.tree, dispersing["Disperses"]), ordinary, dispersing["BSDF"])
@@ -733,11 +737,3 @@ class NativeBody(NativePart):
         everywhere, entrance, leaving = (self.socket(f"Emission at {place}") for place in ("Interfaces", "Entrances", "Exits"))
         shone = self.add(everywhere, self.add(self.mix(self.is_entrance, None, entrance), self.mix(self.is_exit, None, leaving)))
         return self.mix(self.dot(self.socket("Light"), self.join((1.0 / 3.0,) * 3)), None, shone)
-
-
-def _nodes_disperse() -> bool:
-    """Whether this Blender's own nodes split light."""
-    tree = bpy.data.node_groups.new(".", "ShaderNodeTree")
-    found = "Transmission Dispersion Scale" in tree.nodes.new("ShaderNodeBsdfPrincipled").inputs
-    bpy.data.node_groups.remove(tree)
-    return found

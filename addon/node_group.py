@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 
 from .compatibility import FRONT_IOR_SIGNS, UnsupportedError
-from .contacts import PROBE
+from .contacts import BY_OBJECT, PROBE
 from .dispersion import mean_cauchy_distances
 from .identity import NO_SCENE, SCENE_PROPERTY
 from .lookups import looked_up_once
@@ -122,9 +122,6 @@ AIR_AROUND = (0.0, 1.0, 0.0)
 """Priority, IOR and Transmittance Depth of surroundings that are told to nobody."""
 
 CLEAR = (1.0, 1.0, 1.0, 1.0)
-BY_OBJECT = 5
-"""As in osl/outside.h, beside the codes of :mod:`contacts`: each object has its own."""
-
 OFFSET_GROUP = "Nested Dielectric Offset"
 OFFSET_ATTRIBUTE = "nd_offset"
 """Of a mesh's points: by how much the modifier with that group moves them, in the object's own space. Objects that share the

@@ -232,10 +232,6 @@ class Part:
             plug(self.tree, value.socket if isinstance(value, Number) else value, node.inputs[name])
         return dict(zip((socket.name for socket in node.outputs), node.outputs))
 
-    def number_of(self, node: str, output: str | int = 0) -> Number:
-        """An output of a new node without inputs."""
-        return Number(self.tree, self.node(node).outputs[output])
-
     def mix(self, factor: Number, first: Socket | None, second: Socket | None) -> Socket:
         """One of two shaders, or both."""
         return mix_shaders(self.tree, factor.socket, first, second)
