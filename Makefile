@@ -12,13 +12,19 @@ BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli 
 # Small renders mostly wait for one thread that compiles shaders, so two files at a time take half as long.
 PYTEST_OPTIONS := -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: demo presets assets docs test test-quick test-lts bench bench-quick extension clean
+.PHONY: check demo presets assets docs test test-quick test-lts bench bench-quick extension clean
 
 demo: $(STAMP)
 	$(PYTHON) -m nested_dielectric demo
 
 test: $(STAMP)
 	$(PYTHON) -m pytest $(PYTEST_OPTIONS)
+
+# Style, of Python and of OSL: settings in pyproject.toml and .clang-format.
+check: $(STAMP)
+	.venv/bin/ruff check .
+	.venv/bin/ruff format --check .
+	.venv/bin/clang-format --dry-run --Werror osl/*.h osl/*.osl
 
 # What renders nothing, which "make test" runs first.
 test-quick: $(STAMP)
@@ -61,7 +67,7 @@ $(WHEEL): | $(STAMP)
 REQUIREMENTS = $(@D)/bin/python -c 'import tomllib; p = tomllib.load(open("pyproject.toml", "rb")); \
   extras = p["project"]["optional-dependencies"]; \
   lts = p["tool"]["nested-dielectric"]["lts"] if "$(@D)" == ".venv-lts" else None; \
-  found = p["project"]["dependencies"] + extras["test"] + ([] if lts else extras["presets"]); \
+  found = p["project"]["dependencies"] + extras["test"] + ([] if lts else extras["presets"] + extras["check"]); \
   print(*[lts if lts and each.startswith("bpy==") else each for each in found])'
 
 .venv/.installed .venv-lts/.installed: pyproject.toml

@@ -12,25 +12,25 @@
 
 import sys
 
-from .files import ending_at_once
+from .model.files import ending_at_once
 
 if "bpy" not in sys.modules:
     with ending_at_once():  # which Blender's start would swallow
         import bpy  # noqa: F401
 
-from .analysis import clear_analysis
-from .caustics import set_shadow_caustics
-from .compatibility import UnsupportedError
-from .lights import light_carriers
-from .live import analyse
-from .materials import new_material
-from .media import assign, get_priority, set_priority
-from .parameters import ParameterError
-from .passes import add_passes
-from .preparation import Preparation, prepare
-from .preset_library import preset_names
+from .analysis.analysis import clear_analysis
+from .model.parameters import ParameterError
+from .nodes.compatibility import UnsupportedError
+from .preparation.live import analyse
+from .preparation.preparation import Preparation, prepare
+from .preparation.versions import update_materials
 from .registration import register, unregister
-from .versions import update_materials
+from .scene.caustics import set_shadow_caustics
+from .scene.lights import light_carriers
+from .scene.materials import new_material
+from .scene.media import assign, get_priority, set_priority
+from .scene.passes import add_passes
+from .scene.preset_library import preset_names
 
 __all__ = [
     "ParameterError",

@@ -17,20 +17,20 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from .compatibility import BACKENDS, OSL, require_blender
-from .files import absolute, ending_at_once, replacing
-from .iced_water import build_scene
-from .jf import JfError, read_nodes, report, translate
-from .live import keep_cut
-from .materials import dielectric_node, new_material
-from .output import check_picture, reason, save_blend
-from .parameters import BY_KEYWORD, ParameterError
-from .preparation import prepare
-from .preset_library import catalogue
-from .rendering import ProgressLine, file_format_of, render_frame, sampling_time
-from .spectra import DISTRIBUTIONS, GAMUTS, WAVELENGTHS, SpectrumError, plot, spectral_table
-from .versions import update_materials
-from .working_space import working_gamut
+from .demo.iced_water import build_scene
+from .importers.jf import JfError, read_nodes, report, translate
+from .model.files import absolute, ending_at_once, replacing
+from .model.parameters import BY_KEYWORD, ParameterError
+from .model.spectra import DISTRIBUTIONS, GAMUTS, WAVELENGTHS, SpectrumError, plot, spectral_table
+from .nodes.compatibility import BACKENDS, OSL, require_blender
+from .nodes.working_space import working_gamut
+from .preparation.live import keep_cut
+from .preparation.preparation import prepare
+from .preparation.versions import update_materials
+from .scene.materials import dielectric_node, new_material
+from .scene.output import check_picture, reason, save_blend
+from .scene.preset_library import catalogue
+from .scene.rendering import ProgressLine, file_format_of, render_frame, sampling_time
 
 PROGRAM = "nested-dielectric"
 DEMO_OUTPUT = Path("out/iced_water.png")
@@ -86,7 +86,9 @@ def _parser() -> argparse.ArgumentParser:
     render.add_argument("--samples", type=_positive, help="samples per pixel (default: the scene's)")
     render.add_argument("--frame", type=int, help="frame to render (default: the current one)")
     render.add_argument(
-        "--no-cut", action="store_true", help="render media as they are; the default cuts their surfaces where they cross"
+        "--no-cut",
+        action="store_true",
+        help="render media as they are; the default cuts their surfaces where they cross",
     )
     _add_backend(render)
     render.set_defaults(run=_render)
@@ -240,7 +242,11 @@ def _prepare(options: argparse.Namespace) -> None:
     print(prepare(scene, options.cut, options.backend))
     if options.cut:
         hindrance = keep_cut(scene)
-        print(f"each frame is cut as it is rendered: {hindrance}" if hindrance else f"the cut of frame {scene.frame_current} is in the file")
+        print(
+            f"each frame is cut as it is rendered: {hindrance}"
+            if hindrance
+            else f"the cut of frame {scene.frame_current} is in the file"
+        )
     print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
 
 

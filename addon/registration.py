@@ -7,32 +7,14 @@ from contextlib import ExitStack
 
 import bpy
 
-from . import (
-    add_menu,
-    asset_library,
-    dispersion_panels,
-    dropped,
-    icons,
-    lamp_panel,
-    live,
-    media_list,
-    media_rows,
-    medium_panels,
-    notices,
-    object_menu,
-    operators,
-    preferences,
-    preparation_operators,
-    preset_menus,
-    preset_operators,
-    preset_pictures,
-    priority_operators,
-    scene_panels,
-    versions,
-)
-from .checks import material_problems
-from .compatibility import blender_note, blender_problem, settings_problem
-from .media import media
+from .nodes.compatibility import blender_note, blender_problem, settings_problem
+from .preparation import live, versions
+from .preparation.checks import material_problems
+from .scene.media import media
+from .ui import add_menu, icons, notices, object_menu, preferences
+from .ui.operators import operators, preparation_operators, priority_operators
+from .ui.panels import dispersion_panels, lamp_panel, media_list, media_rows, medium_panels, scene_panels
+from .ui.presets import asset_library, dropped, preset_menus, preset_operators, preset_pictures
 
 _CHANGES = tuple(
     getattr(bpy.app.handlers, f"{when}_post") for when in ("depsgraph_update", "frame_change", "undo", "redo", "load")

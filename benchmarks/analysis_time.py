@@ -13,16 +13,17 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "helpers"))
 
-import bpy  # noqa: E402
+import bpy
+from bench_report import markdown
+from bench_scenes import Body, ball, droplets, iced_water_scene
+from bench_worker import add_bodies, nested
+from scenes import new_scene
 
-import nested_dielectric as nd  # noqa: E402
-from bench_report import markdown  # noqa: E402
-from bench_scenes import Body, ball, droplets, iced_water_scene  # noqa: E402
-from bench_worker import add_bodies, nested  # noqa: E402
-from nested_dielectric import analysis, live  # noqa: E402
-from scenes import new_scene  # noqa: E402
+import nested_dielectric as nd
+from nested_dielectric.analysis import analysis
+from nested_dielectric.preparation import live
 
 STEPS = 5
 

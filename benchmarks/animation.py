@@ -24,9 +24,9 @@ from mathutils import Euler
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from bench_errors import block_means, relative_error  # noqa: E402
-from bench_report import LABELS, markdown, millionths, renew  # noqa: E402
-from bench_scenes import (  # noqa: E402
+from bench_errors import block_means, relative_error
+from bench_report import LABELS, markdown, millionths, renew
+from bench_scenes import (
     GLASS,
     GLASS_PRIORITY,
     ICE,
@@ -42,10 +42,11 @@ from bench_scenes import (  # noqa: E402
     turned,
     turned_profile,
 )
-from bench_worker import NESTED, Cost, State, Worker, now, sampling_of, save  # noqa: E402
-from hand_split import split  # noqa: E402
-from nested_dielectric import iced_water  # noqa: E402
-from scenes import read_picture  # noqa: E402
+from bench_worker import Cost, State, Worker, now, sampling_of, save
+from hand_split import split
+from scenes import read_picture
+
+from nested_dielectric.demo import iced_water
 
 FRAMES = 24
 EVERY = {"split": 1, "cut": 1, "asking": 4}

@@ -29,13 +29,14 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-import nested_dielectric as nd  # noqa: E402
-from bench_errors import Reference, block_means, floor, relative_error  # noqa: E402
-from bench_report import plot, renew, tables  # noqa: E402
-from bench_scenes import DISPERSING, SCENES, BenchScene  # noqa: E402
-from bench_worker import NESTED, WAVELENGTHS, Built, Cost, Worker, save  # noqa: E402
-from hand_split import Piece, Split, split  # noqa: E402
-from scenes import BOUNCES  # noqa: E402
+from bench_errors import Reference, block_means, floor, relative_error
+from bench_report import plot, renew, tables
+from bench_scenes import DISPERSING, SCENES, BenchScene
+from bench_worker import NESTED, WAVELENGTHS, Built, Cost, Worker, save
+from hand_split import Piece, Split, split
+from scenes import BOUNCES
+
+import nested_dielectric as nd
 
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
@@ -351,7 +352,7 @@ def usable_peers(scene: BenchScene, pieces: Sequence[Piece]) -> Peers | None:
 
 def loaded(name: str) -> tuple[BenchScene, Split]:
     """A scene and its hand-split pieces, kept in ``out/bench`` for as long as what makes them stays the same."""
-    sources = [HERE / "bench_scenes.py", HERE / "hand_split.py", Path(nd.__file__).parent / "iced_water.py"]
+    sources = [HERE / "bench_scenes.py", HERE / "hand_split.py", Path(nd.__file__).parent / "demo" / "iced_water.py"]
     digest = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
     path = OUT / f"{name}-{digest}.pickle"
     if path.exists():

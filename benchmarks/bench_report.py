@@ -7,11 +7,10 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
+from bench_errors import Floor
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
-
-from bench_errors import Floor
 
 README = Path(__file__).resolve().parent / "README.md"
 
@@ -179,7 +178,9 @@ def cost_cells(result: dict, way: str) -> list[str]:
 
 def error_table(results: Sequence[dict]) -> str:
     """Errors at the most samples, and what is left without noise."""
-    floored = [way for way in LABELS if way not in ("split", "plain") and any(way in result["errors"] for result in results)]
+    floored = [
+        way for way in LABELS if way not in ("split", "plain") and any(way in result["errors"] for result in results)
+    ]
     header = ["Error (relMSE) × 10⁶", "samples", "Glass", *(LABELS[way] for way in NESTED)]
     header += [f"floor: {LABELS[way]}" for way in floored]
     rows = []
@@ -187,7 +188,9 @@ def error_table(results: Sequence[dict]) -> str:
         errors = result["errors"]
         last = [errors[way]["points"][-1] if way in errors else None for way in ("split", *NESTED)]
         cells = [floor_cell(errors[way]["floor"]) if way in errors else "" for way in floored]
-        rows.append([result["title"], str(last[0]["samples"]), *(millionths(p["relmse"]) if p else "" for p in last), *cells])
+        rows.append(
+            [result["title"], str(last[0]["samples"]), *(millionths(p["relmse"]) if p else "" for p in last), *cells]
+        )
     return markdown(header, rows)
 
 

@@ -14,12 +14,13 @@ from math import cos, pi, radians, sin, sqrt
 from pathlib import Path
 
 import bpy  # before bmesh and mathutils, which live inside it
+
 import bmesh  # isort: skip
 import numpy as np
 from mathutils import Euler, Matrix, Vector
 
-from nested_dielectric import iced_water
-from nested_dielectric.shapes import triangles_of
+from nested_dielectric.demo import iced_water
+from nested_dielectric.scene.shapes import triangles_of
 
 AIR, WATER, ICE, GLASS = 1.0, 1.33, 1.31, 1.52
 WINE = 1.345
@@ -377,7 +378,12 @@ def faceted_scene() -> BenchScene:
         ((0.21, 0.23, 0.19), (0.18, 0.05, 0.66), Euler((-0.06, 0.1, -0.4))),
     )
     ice = tuple(
-        Body(f"Ice {place}", *moved(turned(box(-Vector(size) / 2.0, Vector(size) / 2.0), turn), centre), ICE_PRIORITY, ICE)
+        Body(
+            f"Ice {place}",
+            *moved(turned(box(-Vector(size) / 2.0, Vector(size) / 2.0), turn), centre),
+            ICE_PRIORITY,
+            ICE,
+        )
         for place, (size, centre, turn) in enumerate(blocks)
     )
     bodies = (
@@ -386,9 +392,7 @@ def faceted_scene() -> BenchScene:
         Body("Water", *faceted(FACETED_WATER), WATER_PRIORITY, WATER),
     )
     view = View((0.0, -4.3, 1.75), (0.012, 0.0, 0.49), 17.0)
-    return BenchScene(
-        "faceted", "a tumbler of few, large faces with ice and water", bodies, view, banded_sky(), True
-    )
+    return BenchScene("faceted", "a tumbler of few, large faces with ice and water", bodies, view, banded_sky(), True)
 
 
 Facet = tuple[float, float, float]

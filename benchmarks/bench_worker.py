@@ -18,18 +18,18 @@ from pathlib import Path
 from typing import BinaryIO
 
 HERE = Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "tests"))
+sys.path.insert(0, str(HERE.parent / "tests" / "helpers"))
 
-import bpy  # noqa: E402  before mathutils, which lives inside it
-import numpy as np  # noqa: E402
-from bench_scenes import BenchScene, Body, mesh_of  # noqa: E402
-from hand_split import Piece, Split, split  # noqa: E402
-from mathutils import Matrix  # noqa: E402
+import bpy
+import numpy as np
+from bench_scenes import BenchScene, Body, mesh_of
+from hand_split import Piece, Split, split
+from mathutils import Matrix
+from scenes import add, add_camera, cycles_glass, native, new_scene, render
 
-import nested_dielectric as nd  # noqa: E402
-from nested_dielectric.dispersion import abbe_ior  # noqa: E402
-from nested_dielectric.materials import material_table  # noqa: E402
-from scenes import add, add_camera, cycles_glass, native, new_scene, render  # noqa: E402
+import nested_dielectric as nd
+from nested_dielectric.model.dispersion import abbe_ior
+from nested_dielectric.scene.materials import material_table
 
 FIRST, LAST = "| Sample 0/", "| Finished"
 """What Cycles says before its first sample, when all is loaded and compiled, and after its last."""

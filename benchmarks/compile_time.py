@@ -10,10 +10,11 @@ import sys
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "helpers"))
 
-import nested_dielectric as nd  # noqa: E402
-from scenes import add_camera, add_sphere, cycles_glass, new_scene, render, set_world  # noqa: E402
+from scenes import add_camera, add_sphere, cycles_glass, new_scene, render, set_world
+
+import nested_dielectric as nd
 
 MATERIALS = 50
 GLASS, ANALYSED, ASKING, PLAIN, NATIVE = KINDS = (

@@ -12,15 +12,15 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "helpers"))
 
-import bpy  # noqa: E402
+import bpy
+from bench_report import markdown, renew
+from bench_scenes import BenchScene, bucket, droplets, iced_water_scene
+from bench_worker import NESTED, Cost, add_bodies, draw, nested, now
+from scenes import add_camera, new_scene
 
-import nested_dielectric as nd  # noqa: E402
-from bench_report import markdown, renew  # noqa: E402
-from bench_scenes import BenchScene, bucket, droplets, iced_water_scene  # noqa: E402
-from bench_worker import NESTED, Cost, add_bodies, draw, nested, now  # noqa: E402
-from scenes import add_camera, new_scene  # noqa: E402
+import nested_dielectric as nd
 
 SCENES: dict[str, tuple[Callable[[], BenchScene], str]] = {
     "iced water, an ice cube": (iced_water_scene, "Ice Cube 2"),

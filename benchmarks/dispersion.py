@@ -28,21 +28,21 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "tests"))
+sys.path.insert(0, str(ROOT / "tests" / "helpers"))
 
-import bpy  # noqa: E402  before bmesh, which lives inside it
-import bmesh  # noqa: E402  isort: skip
-import numpy as np  # noqa: E402
-from matplotlib.axes import Axes  # noqa: E402
-from matplotlib.figure import Figure  # noqa: E402
+import bmesh
+import bpy
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from scenes import add_camera, add_mesh, add_sphere, render, set_world
+from test_dispersion import APEX, CLEAR, SF11, dispersing_scene, index, material, prism, set_band_world
 
-from nested_dielectric import node_group  # noqa: E402
-from nested_dielectric.dispersion import LINE_D, mean_cauchy_distances  # noqa: E402
-from nested_dielectric.materials import dielectric_node, material_table  # noqa: E402
-from nested_dielectric.presets import load_preset  # noqa: E402
-from nested_dielectric.shader_source import inlined_source  # noqa: E402
-from scenes import add_camera, add_mesh, add_sphere, render, set_world  # noqa: E402
-from test_dispersion import APEX, CLEAR, SF11, dispersing_scene, index, material, prism, set_band_world  # noqa: E402
+from nested_dielectric.model.dispersion import LINE_D, mean_cauchy_distances
+from nested_dielectric.model.presets import load_preset
+from nested_dielectric.model.shader_source import inlined_source
+from nested_dielectric.nodes import node_group
+from nested_dielectric.scene.materials import dielectric_node, material_table
 
 DIAMOND = load_preset("diamond").parameters
 

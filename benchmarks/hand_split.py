@@ -20,7 +20,7 @@ from bench_scenes import AIR, SCENES, Body, joined, mesh_arrays, mesh_of
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from nested_dielectric import meshes
+from nested_dielectric.geometry import meshes
 
 OWN = "own"
 """Face attribute that tells a surface's own faces from those that cutters left."""

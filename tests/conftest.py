@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parent))
+sys.path[:0] = [str(Path(__file__).parent / room) for room in ("helpers", "blender", "render")]
 
 
 def pytest_collection_modifyitems(items):
@@ -17,7 +17,7 @@ def pytest_collection_modifyitems(items):
 def nothing_is_followed_any_more():
     """An analysis keeps a session's scenes analysed; each test begins as a session does."""
     yield
-    live = sys.modules.get("nested_dielectric.live")
+    live = sys.modules.get("nested_dielectric.preparation.live")
     if live is not None and not sys.modules["nested_dielectric.registration"].is_registered():
         live.remove()
 

@@ -13,7 +13,7 @@ SPREAD = 0.3
 
 
 def prism(distribution: str, clamp: bool = False, background: float = 0.1) -> bpy.types.Scene:
-    """A prism that stands before slits, whose light is that of a distribution of :mod:`nested_dielectric.spectra`."""
+    """A prism that stands before slits, whose light is that of a distribution of :mod:`nested_dielectric.model.spectra`."""
     scene = studio.new_scene(400, 220, samples=96)
     scene.view_settings.view_transform = "Standard"
     scene.view_settings.look = "None"

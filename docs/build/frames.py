@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 
 bpy.utils.expose_bundled_modules()
-import OpenImageIO as oiio  # noqa: E402  Blender's own copy
+import OpenImageIO as oiio
 
 PAPER = (250, 250, 248)
 INK = "#2a2a2a"

@@ -8,7 +8,7 @@ from pathlib import Path
 import frames
 import numpy as np
 
-from nested_dielectric.presets import GROUPS, PRESET_FOLDER, Preset, load_preset, preset_names
+from nested_dielectric.model.presets import GROUPS, PRESET_FOLDER, Preset, load_preset, preset_names
 
 PREVIEWS = PRESET_FOLDER / "previews"
 COLUMNS = 9

@@ -10,9 +10,9 @@ import bpy
 import studio
 
 import nested_dielectric as nd
-from nested_dielectric.iced_water import build_scene
-from nested_dielectric.materials import dielectric_node, medium_material
-from nested_dielectric.media import media
+from nested_dielectric.demo.iced_water import build_scene
+from nested_dielectric.scene.materials import dielectric_node, medium_material
+from nested_dielectric.scene.media import media
 
 RED = {"transmittance": (0.85, 0.05, 0.03), "transmittance_depth": 0.8}
 BLUE = {"transmittance": (0.05, 0.28, 0.75), "transmittance_depth": 0.8}

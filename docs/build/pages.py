@@ -5,9 +5,9 @@ from __future__ import annotations
 from itertools import groupby
 from pathlib import Path
 
-from nested_dielectric import spectra
-from nested_dielectric.parameters import PARAMETERS, Limit, Parameter
-from nested_dielectric.presets import Preset, all_presets
+from nested_dielectric.model import spectra
+from nested_dielectric.model.parameters import PARAMETERS, Limit, Parameter
+from nested_dielectric.model.presets import Preset, all_presets
 
 FOLDER = Path(__file__).resolve().parent.parent
 
@@ -55,7 +55,10 @@ def parameters_page() -> str:
     parts = [PARAMETERS_INTRODUCTION]
     for panel in dict.fromkeys(parameter.panel for parameter in PARAMETERS):
         members = [parameter for parameter in PARAMETERS if parameter.panel == panel]
-        rows = [("Parameter", "Keyword", "Default", "Values", "What it does", "Rendered by"), *map(_parameter_row, members)]
+        rows = [
+            ("Parameter", "Keyword", "Default", "Values", "What it does", "Rendered by"),
+            *map(_parameter_row, members),
+        ]
         parts += [f"## {panel}\n", _table(rows), *_choices(members)]
     words = ", ".join(f"`{choice.keyword}` ({choice.description})" for choice in spectra.DISTRIBUTIONS)
     return "\n".join((*parts, SPECTRUM_NOTE.format(words=words)))

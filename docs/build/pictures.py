@@ -13,12 +13,12 @@ import bpy
 import colours
 import frames
 import lamps
-import library
 import nesting
 import numpy as np
 
+import library
 import nested_dielectric as nd
-from nested_dielectric.rendering import render_frame
+from nested_dielectric.scene.rendering import render_frame
 
 HERE = Path(__file__).resolve().parent
 FOLDER = HERE.parent / "pictures"

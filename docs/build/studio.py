@@ -13,13 +13,14 @@ import bpy
 from mathutils import Matrix, Vector
 
 import nested_dielectric as nd
-from nested_dielectric.iced_water import lathe, rounded
+from nested_dielectric.demo.iced_water import lathe, rounded
 
 Colour = tuple[float, float, float]
 
 WARM: Colour = (1.0, 0.86, 0.70)
 COOL: Colour = (0.80, 0.90, 1.0)
 GREY: Colour = (0.5, 0.5, 0.5)
+
 
 def new_scene(width: int, height: int, samples: int) -> bpy.types.Scene:
     """Empty the file and return its scene, with settings for a small, denoised picture."""
@@ -143,9 +144,7 @@ def surface(name: str, colour: Colour, roughness: float) -> bpy.types.Material:
     return material
 
 
-def floor(
-    light: Colour = (0.62, 0.60, 0.57), dark: Colour = (0.36, 0.37, 0.39), tile: float = 0.5
-) -> bpy.types.Object:
+def floor(light: Colour = (0.62, 0.60, 0.57), dark: Colour = (0.36, 0.37, 0.39), tile: float = 0.5) -> bpy.types.Object:
     """Lay a floor of two kinds of tiles, to see through what stands on it."""
     mesh = bpy.data.meshes.new("Floor")
     mesh.from_pydata([(-12, -12, 0), (12, -12, 0), (12, 7, 0), (-12, 7, 0)], [], [(0, 1, 2, 3)])
@@ -233,4 +232,3 @@ def camera(place: Sequence[float], target: Sequence[float], lens: float) -> bpy.
     obj.rotation_euler = (obj.location - Vector(target)).to_track_quat("Z", "Y").to_euler()
     bpy.context.scene.camera = obj
     return obj
-

@@ -15,12 +15,12 @@ import bpy
 import numpy as np
 
 import nested_dielectric as nd
-from nested_dielectric.files import replacing
-from nested_dielectric.preset_pictures import picture_path
-from nested_dielectric.presets import GROUPS, Preset, all_presets
+from nested_dielectric.model.files import replacing
+from nested_dielectric.model.presets import GROUPS, Preset, all_presets
+from nested_dielectric.ui.presets.preset_pictures import picture_path
 
 bpy.utils.expose_bundled_modules()
-import OpenImageIO as oiio  # noqa: E402  Blender's own copy
+import OpenImageIO as oiio
 
 FILE_NAME = "nested_dielectric.blend"
 CATALOGUES = "blender_assets.cats.txt"

@@ -15,9 +15,9 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix, Vector
 
-from nested_dielectric import iced_water
-from nested_dielectric.media import assign
-from nested_dielectric.presets import Preset
+from nested_dielectric.demo import iced_water
+from nested_dielectric.model.presets import Preset
+from nested_dielectric.scene.media import assign
 
 CAMERA = Vector((0.0, -2.9, 1.55))
 LIQUID_LEVEL = 0.7

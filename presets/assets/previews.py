@@ -17,15 +17,15 @@ from time import perf_counter, process_time
 import bpy
 
 import nested_dielectric as nd
-from nested_dielectric.files import replacing
-from nested_dielectric.preset_pictures import picture_path
-from nested_dielectric.presets import Preset, load_preset, preset_names
+from nested_dielectric.model.files import replacing
+from nested_dielectric.model.presets import Preset, load_preset, preset_names
+from nested_dielectric.ui.presets.preset_pictures import picture_path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from preview_scenes import build, kind_of  # noqa: E402
+from preview_scenes import build, kind_of
 
 bpy.utils.expose_bundled_modules()
-import OpenImageIO as oiio  # noqa: E402  Blender's own copy
+import OpenImageIO as oiio
 
 EDITION = 1
 """To be counted on when the scenes change, so that all previews are rendered anew."""

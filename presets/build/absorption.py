@@ -131,7 +131,11 @@ class Wine:
     def terms(self) -> tuple[Term, ...]:
         """The edge and the two bands that have these three absorbances together."""
         points = (420.0, 520.0, 620.0)
-        shapes = [lambda s: Edge(420.0, s, 0.0125), lambda s: Band(520.0, s, 4000.0, 2900.0), lambda s: Band(620.0, s, 2000.0)]
+        shapes = [
+            lambda s: Edge(420.0, s, 0.0125),
+            lambda s: Band(520.0, s, 4000.0, 2900.0),
+            lambda s: Band(620.0, s, 2000.0),
+        ]
         unit = [[shape(1.0).per_metre(nm) / PER_CM for shape in shapes] for nm in points]
         strengths = np.linalg.solve(np.array(unit), np.array([self.a420, self.a520, self.a620]))
         return tuple(shape(float(strength)) for shape, strength in zip(shapes, strengths, strict=True))

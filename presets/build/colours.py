@@ -16,7 +16,7 @@ from functools import cache
 
 import numpy as np
 
-from nested_dielectric import spectra
+from nested_dielectric.model import spectra
 
 from .absorption import Term
 
@@ -70,7 +70,7 @@ def _channel(terms: tuple[Term, ...], metres: float, index: int) -> float:
     halvings = 0
     while (value := linear_rgb(transmittance(terms, metres / 2**halvings))[index]) < LEGIBLE:
         halvings += 1
-    return min(max(value ** 2**halvings, DARKEST), 1.0)
+    return min(max(value**2**halvings, DARKEST), 1.0)
 
 
 def _rounded(channel: float) -> float:

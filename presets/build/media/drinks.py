@@ -17,7 +17,9 @@ OIV = (
 )
 
 
-def _drink(key: str, name: str, tags: str, description: str, source: str, depth: float, index: Drink, *absorption) -> Recipe:
+def _drink(
+    key: str, name: str, tags: str, description: str, source: str, depth: float, index: Drink, *absorption
+) -> Recipe:
     return Recipe(key, name, GROUP, tags, description, source, index, LIQUID, depth, absorption)
 
 

@@ -15,7 +15,9 @@ RUBIN = (
     "0.003169 L^2 + 0.003962 / L^2 with L in micrometres. Three Sellmeier terms fitted to it: within 1e-7 from 380 "
     "to 780 nm."
 )
-BAMFORD = "(Bamford, 1977, Colour generation and control in glass; Bates, 1962, in Modern aspects of the vitreous state 2)"
+BAMFORD = (
+    "(Bamford, 1977, Colour generation and control in glass; Bates, 1962, in Modern aspects of the vitreous state 2)"
+)
 VOGT = "iron of {} % of Fe2O3, scaled from the k of glass with 0.0703 % (Vogt et al., 2016)"
 
 # Chromium(III): 18 l/mol/cm in both of its bands; 0.2 % of Cr2O3 are 0.066 mol/l of it.
@@ -31,7 +33,9 @@ def _iron(percent: float) -> Term:
     return Measured("glass/soda-lime/Vogt-703ppm", percent / IRON)
 
 
-def _glass(key: str, name: str, tags: str, description: str, source: str, depth: float, *absorption, **keywords) -> Recipe:
+def _glass(
+    key: str, name: str, tags: str, description: str, source: str, depth: float, *absorption, **keywords
+) -> Recipe:
     """A soda-lime glass."""
     index: Index = keywords.pop("index", SODA_LIME)
     return Recipe(key, name, GROUP, tags, description, source, index, depth=depth, absorption=absorption, **keywords)

@@ -1,6 +1,6 @@
 """Syrups, oils, alcohols and other liquids of the household."""
 
-from ..absorption import Band, Caramel, Edge
+from ..absorption import Band, Caramel
 from ..indices import Abbe, Drink, Index, Page, Sellmeier
 from ..recipe import FLOATING, LIQUID, Recipe
 
@@ -9,7 +9,13 @@ GROUP = "Liquids"
 REGULATION = "(Regulation (EU) 231/2012)"
 
 # Pheophytin a: its bands relative to that at 670 nm (Lichtenthaler, 1987, Methods in Enzymology 148).
-PHEOPHYTIN = ((411.0, 2.1, 2700.0), (505.0, 0.23, 900.0), (535.0, 0.19, 900.0), (610.0, 0.15, 700.0), (670.0, 1.0, 500.0))
+PHEOPHYTIN = (
+    (411.0, 2.1, 2700.0),
+    (505.0, 0.23, 900.0),
+    (535.0, 0.19, 900.0),
+    (610.0, 0.15, 700.0),
+    (670.0, 1.0, 500.0),
+)
 # Lutein, relative to its absorbance at 470 nm.
 LUTEIN = ((424.0, 0.87, 1500.0), (448.0, 1.21, 1300.0), (477.0, 1.04, 1000.0))
 

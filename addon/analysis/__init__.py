@@ -1,0 +1,1 @@
+"""What surrounds the media of a scene, and where that is kept."""

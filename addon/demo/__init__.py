@@ -1,0 +1,1 @@
+"""The glass of iced water."""

@@ -1,0 +1,1 @@
+"""Closed meshes and how they touch, without Blender's data."""

@@ -1,0 +1,1 @@
+"""Media of other renderers."""

@@ -1,0 +1,1 @@
+"""What stands in materials and files: node groups, their sockets and wiring, tables."""

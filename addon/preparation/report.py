@@ -1,0 +1,90 @@
+"""What *Prepare Scene* found and changed, kept with the scene until it is prepared again.
+
+It is text in a custom property, so that it is saved, undone and copied with the scene; of very much only the beginning.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import bpy
+
+from ..analysis.changes import REPORT_PROPERTY
+from ..scene.settings import AT_LEAST, LABELS, Changed
+from .checks import Problem
+
+MOST_CHARACTERS = 4000
+"""Of problems, and of changes, that are kept."""
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a scene's last preparation found and changed.
+
+    :param media: number of the scene's media then.
+    :param problems: the first of the problems that it left; more_problems: how many more there were.
+    :param changes: the first of its changes that stay, in sentences; more_changes: how many more there were.
+    :param settings: render settings that it, or one before it, has changed.
+    """
+
+    media: int = 0
+    problems: tuple[Problem, ...] = ()
+    more_problems: int = 0
+    changes: tuple[str, ...] = ()
+    more_changes: int = 0
+    settings: Changed = field(default_factory=dict)
+
+
+def keep_report(
+    scene: bpy.types.Scene, media: int, problems: Sequence[Problem], changes: Sequence[str], settings: Changed
+) -> None:
+    """Keep what a preparation found and changed with its scene; nothing where there is nothing to say."""
+    shown, stayed = _first(problems), _first(changes)
+    value = {
+        "media": media,
+        "problems": [(problem.name, problem.text, problem.remedy) for problem in shown],
+        "more_problems": len(problems) - len(shown),
+        "changes": stayed,
+        "more_changes": len(changes) - len(stayed),
+        "settings": settings,
+    }
+    text = json.dumps(value, ensure_ascii=False, separators=(",", ":"))
+    if not any(value.values()):
+        forget_report(scene)
+    elif scene.get(REPORT_PROPERTY) != text:
+        scene[REPORT_PROPERTY] = text
+
+
+def _first(items: Sequence) -> list:
+    """As many as may be kept."""
+    room = MOST_CHARACTERS
+    kept = []
+    for item in items:
+        room -= len(str(item))
+        if room < 0:
+            break
+        kept.append(item)
+    return kept
+
+
+def last_report(scene: bpy.types.Scene) -> Report | None:
+    """Return what the last preparation of a scene said; None if there was none, or its text is not one of ours."""
+    try:
+        value = json.loads(scene[REPORT_PROPERTY])
+        return Report(
+            int(value["media"]),
+            tuple(Problem(*map(str, each)) for each in value["problems"]),
+            int(value["more_problems"]),
+            tuple(map(str, value["changes"])),
+            int(value["more_changes"]),
+            {path: tuple(pair) for path, pair in value["settings"].items() if path in LABELS or path in AT_LEAST},
+        )
+    except (KeyError, TypeError, ValueError, AttributeError):
+        return None
+
+
+def forget_report(scene: bpy.types.Scene) -> None:
+    """Keep nothing any more."""
+    scene.pop(REPORT_PROPERTY, None)

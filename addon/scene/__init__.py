@@ -1,0 +1,1 @@
+"""Blender's data: media, priorities, materials, lights, passes, rendering."""

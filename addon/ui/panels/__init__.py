@@ -1,0 +1,1 @@
+"""Panels of scenes, media and lights."""

@@ -1,0 +1,24 @@
+"""Why operators are greyed out, where several are for the same reason."""
+
+from __future__ import annotations
+
+import bpy
+
+from ..nodes.compatibility import blender_problem
+from .panels.media_list import listed_media
+
+
+def supported(cls: type[bpy.types.Operator]) -> bool:
+    """Tell whether this Blender can render nested dielectrics; if not, the operator says why."""
+    problem = blender_problem()
+    if problem:
+        cls.poll_message_set(problem)
+    return not problem
+
+
+def has_media(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """Tell whether the scene has media; if not, the operator says what to do."""
+    if not listed_media(context.scene).rows:
+        cls.poll_message_set("The scene has no medium; assign a preset first")
+        return False
+    return True

@@ -1,0 +1,1 @@
+"""Choosing presets: menus, pictures, the asset library."""

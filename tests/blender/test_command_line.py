@@ -1,0 +1,182 @@
+"""The command line, as a process of its own."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import bpy
+import numpy as np
+import pytest
+from scenes import add_camera, add_sphere, new_scene, oiio, read_picture, set_striped_world
+
+import nested_dielectric as nd
+from nested_dielectric import cli
+from nested_dielectric.model.spectra import spectral_table
+
+
+def run(*arguments: object) -> subprocess.CompletedProcess:
+    return subprocess.run(
+        [sys.executable, "-m", "nested_dielectric", *map(str, arguments)], capture_output=True, text=True, check=False
+    )
+
+
+def assert_one_line(error: str, *words: str) -> None:
+    lines = error.strip().splitlines()
+    assert len(lines) == 1 and lines[0].startswith("nested-dielectric: error: ")
+    assert all(word in lines[0] for word in words), lines[0]
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory) -> Path:
+    """A saved scene that still renders with EEVEE."""
+    new_scene(24)
+    set_striped_world()
+    add_camera((0, -5, 0.3), (0, 0, 0), angle=28)
+    add_sphere("Glass", 1.0, nd.new_material("Glass", preset="glass"))
+    bpy.context.scene.render.engine = "BLENDER_EEVEE"
+    path = tmp_path_factory.mktemp("file") / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+def test_render_prepares_in_memory_shows_progress_and_leaves_the_file(file, tmp_path):
+    before = file.read_bytes()
+    done = run("render", file, "-o", tmp_path / "new" / "picture.png", "--samples", 20, "--frame", 3)
+    assert done.returncode == 0, done.stderr
+    assert "Render Engine: EEVEE -> Cycles" in done.stdout
+    assert done.stdout.strip().endswith(str(tmp_path / "new" / "picture.png"))
+    assert "of 20 samples" in done.stderr
+    picture = read_picture(tmp_path / "new" / "picture.png")
+    assert picture.shape[:2] == (24, 24) and picture.std() > 0.05
+    assert file.read_bytes() == before
+
+
+def test_prepare_saves_the_file_and_a_second_time_has_nothing_to_do(file):
+    assert "changed: Render Engine" in run("prepare", file).stdout
+    done = run("prepare", file)
+    assert done.returncode == 0 and "nothing to change" in done.stdout
+
+
+def test_prepare_keeps_in_the_file_what_media_are_rendered_with(file, tmp_path):
+    done = run("prepare", file, "--backend", "native", "-o", tmp_path / "native.blend")
+    assert done.returncode == 0 and "rendered: by Cycles' own nodes: 'Glass'" in done.stdout
+    assert "rendered: by Cycles' own nodes" in run("prepare", tmp_path / "native.blend").stdout
+    assert "rendered: by OSL: 'Glass'" in run("prepare", tmp_path / "native.blend", "--backend", "osl").stdout
+    assert run("prepare", file, "--backend", "cuda").returncode == 2
+
+
+def test_presets_are_listed():
+    done = run("presets")
+    assert done.returncode == 0
+    assert set(nd.preset_names()) <= {line.split()[0] for line in done.stdout.splitlines()}
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (("render", "missing.blend", "-o", "x.png"), ("missing.blend", "no such file")),
+        (("import-jf", "missing.json"), ("missing.json: No such file",)),
+        (("prepare",), ("no file is open",)),
+    ],
+)
+def test_a_failure_is_one_clear_line_and_exit_code_1(arguments, words):
+    done = run(*arguments)
+    assert done.returncode == 1
+    assert_one_line(done.stderr, *words)
+
+
+def test_a_file_that_is_no_blend_is_named(tmp_path):
+    (tmp_path / "text.blend").write_text("no blend")
+    done = run("render", tmp_path / "text.blend", "-o", tmp_path / "x.png")
+    assert done.returncode == 1
+    assert "text.blend" in done.stderr.strip().splitlines()[-1]
+
+
+def test_an_ending_without_a_format_is_named_before_anything_is_rendered(file, tmp_path):
+    done = run("render", file, "-o", tmp_path / "picture.xyz")
+    assert done.returncode == 1
+    assert_one_line(done.stderr, "picture.xyz", ".png")
+
+
+def test_bake_writes_the_table_what_it_is_and_a_plot(tmp_path):
+    output, plot = tmp_path / "new" / "table.exr", tmp_path / "drawn" / "plot.png"
+    done = run(
+        "bake", "--distribution", "fluorescent", "--gamut", "Rec2020", "--saturation", 0.5, "--keep-negative",
+        "-o", output, "--plot", plot,
+    )  # fmt: skip
+    assert done.returncode == 0 and done.stderr == "", done.stderr
+    said = done.stdout.splitlines()[-1]  # after Blender's own lines
+    assert all(word in said for word in ("4096 entries", "REC2020", str(output), str(plot)))
+    picture = oiio.ImageBuf(str(output))
+    assert picture.spec().channelnames == ("R", "G", "B", "A") and picture.spec().format == oiio.FLOAT
+    table = picture.get_pixels(oiio.FLOAT)
+    assert np.array_equal(table[0], spectral_table("FLUORESCENT", "REC2020", 0.5, False))
+    told = {attribute.name: attribute.value for attribute in picture.spec().extra_attribs}
+    assert told["distribution"] == "fluorescent" and told["gamut"] == "REC2020" and told["saturation"] == 0.5
+    assert told["clamp_negative"] == 0 and told["alpha"] == "wavelength in nm"
+    assert told["wavelength_range"] == "380 to 780 nm" and told["Software"] == "nested-dielectric"
+    drawn = read_picture(plot)
+    assert min(drawn.shape[:2]) > 400 and drawn.std() > 0.1
+
+
+def test_bake_takes_the_working_space_of_the_open_file_and_a_csv_file(tmp_path, capsys):
+    (tmp_path / "lamp.csv").write_text("nm,power\n400,1\n700,3\n")
+    new_scene()
+    bpy.ops.wm.set_working_color_space(convert_colors=False, working_space="ACEScg")
+    try:
+        capsys.readouterr()
+        arguments = ["bake", "--distribution", str(tmp_path / "lamp.csv"), "-o", str(tmp_path / "table.exr")]
+        assert cli.main(arguments) == 0
+        assert "ACESCG" in capsys.readouterr().out
+    finally:
+        new_scene()
+    table = oiio.ImageBuf(str(tmp_path / "table.exr")).get_pixels(oiio.FLOAT)
+    assert np.array_equal(table[0], spectral_table(tmp_path / "lamp.csv", "ACESCG"))
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (("-o", "table.png"), ("table.png", ".exr")),
+        (("-o", "table"), ("table", ".exr")),
+        (("-o", "folder.exr"), ("folder.exr", "cannot be written")),
+        (("-o", "file/table.exr"), ("file",)),
+        (("-o", "table.exr", "--plot", "plot.xyz"), ("plot.xyz", ".png")),
+        (("-o", "table.exr", "--distribution", "DAYLITE"), ("DAYLITE", "DAYLIGHT")),
+        (("-o", "table.exr", "--saturation", "nan"), ("saturation", "0 to 1")),
+        (("-o", "table.exr", "--distribution", "/dev/zero"), ("/dev/zero", "longer")),
+        (("-o", "table.exr", "--plot", "file/plot.png"), ("plot.png", "file is no folder")),
+    ],
+)
+def test_bake_names_what_it_cannot_do_and_writes_nothing(arguments, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder.exr").mkdir()
+    (tmp_path / "file").touch()
+    assert cli.main(["bake", *arguments]) == 1
+    assert_one_line(capsys.readouterr().err, *words)
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["file", "folder.exr"]
+
+
+def test_bake_without_matplotlib_says_so_before_anything_is_written(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)  # as in Blender's own Python
+    arguments = ["bake", "-o", str(tmp_path / "table.exr"), "--plot", str(tmp_path / "plot.png")]
+    assert cli.main(arguments) == 1
+    assert_one_line(capsys.readouterr().err, "matplotlib", "install")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        (),
+        ("rendr",),
+        ("render",),
+        ("render", "a.blend", "-o", "b.png", "--samples", "0"),
+        ("bake",),
+        ("bake", "-o", "a.exr", "--gamut", "sRGB"),
+        ("render", "a.blend", "-o", "folder.png/"),
+        ("demo", "--save", "a.png"),
+    ],
+)
+def test_wrong_usage_has_exit_code_2(arguments):
+    assert run(*arguments).returncode == 2
