@@ -18,17 +18,17 @@ if "bpy" not in sys.modules:
     with ending_at_once():  # which Blender's start would swallow
         import bpy  # noqa: F401
 
-from .analysis.analysis import clear_analysis
-from .model.parameters import ParameterError
+from .analysis.surroundings import clear_analysis
+from .model.parameter import ParameterError
 from .nodes.compatibility import UnsupportedError
 from .preparation.live import analyse
-from .preparation.preparation import Preparation, prepare
+from .preparation.prepare_scene import Preparation, prepare
 from .preparation.versions import update_materials
 from .registration import register, unregister
 from .scene.caustics import set_shadow_caustics
 from .scene.lights import light_carriers
-from .scene.materials import new_material
 from .scene.media import assign, get_priority, set_priority
+from .scene.new_materials import new_material
 from .scene.passes import add_passes
 from .scene.preset_library import preset_names
 

@@ -7,14 +7,29 @@ from contextlib import ExitStack
 
 import bpy
 
-from .nodes.compatibility import blender_note, blender_problem, settings_problem
+from .nodes.compatibility import blender_note, blender_problem
+from .nodes.render_settings import settings_problem
 from .preparation import live, versions
-from .preparation.checks import material_problems
+from .preparation.material_checks import material_problems
 from .scene.media import media
-from .ui import add_menu, icons, notices, object_menu, preferences
-from .ui.operators import operators, preparation_operators, priority_operators
-from .ui.panels import dispersion_panels, lamp_panel, media_list, media_rows, medium_panels, scene_panels
-from .ui.presets import asset_library, dropped, preset_menus, preset_operators, preset_pictures
+from .ui import asset_library, media_list, media_rows, pictures, preferences
+from .ui.operators import (
+    dispersion_operators,
+    light_operators,
+    preparation_operators,
+    priority_operators,
+    update_operators,
+)
+from .ui.panels import (
+    add_menu,
+    light_panel,
+    media_list_panel,
+    medium_panels,
+    notices,
+    object_menu,
+    scene_panels,
+)
+from .ui.presets import dropped, own_preset_operators, preset_menus, preset_operators, preset_pictures
 
 _CHANGES = tuple(
     getattr(bpy.app.handlers, f"{when}_post") for when in ("depsgraph_update", "frame_change", "undo", "redo", "load")
@@ -24,18 +39,44 @@ _CHANGES = tuple(
 CLASSES = (
     *preferences.CLASSES,
     media_rows.NestedDielectricPlace,
-    *operators.CLASSES,
+    *dispersion_operators.CLASSES,
+    *update_operators.CLASSES,
+    *light_operators.CLASSES,
     *preset_operators.CLASSES,
+    *own_preset_operators.CLASSES,
     *preset_menus.CLASSES,
     *object_menu.CLASSES,
     *add_menu.CLASSES,
     *priority_operators.CLASSES,
     *preparation_operators.CLASSES,
+    *media_list_panel.CLASSES,
     *scene_panels.CLASSES,
     *medium_panels.CLASSES,
-    *lamp_panel.CLASSES,
+    *light_panel.CLASSES,
     *scene_panels.LAST_CLASSES,
 )
+"""In the order in which they are registered: panels after those that they stand below."""
+
+_PROPERTIES = (
+    (
+        bpy.types.Scene,
+        "nested_dielectric_active",
+        lambda: bpy.props.IntProperty(
+            name="Active Medium", get=media_rows.get_active, set=media_rows.set_active, options=set()
+        ),
+    ),
+    (
+        bpy.types.WindowManager,
+        "nested_dielectric_places",
+        lambda: bpy.props.CollectionProperty(type=media_rows.NestedDielectricPlace),
+    ),
+    (
+        bpy.types.WindowManager,
+        "nested_dielectric_presets",
+        lambda: bpy.props.PointerProperty(type=preset_menus.NestedDielectricPresetChoice, options={"SKIP_SAVE"}),
+    ),
+)
+"""Blender's types, the properties that they get, and what makes these once their own types are registered."""
 
 _registered: ExitStack | None = None
 """How to take out what :func:`register` put in; None while nothing is in."""
@@ -53,70 +94,56 @@ def register() -> None:
         for cls in CLASSES:
             bpy.utils.register_class(cls)
             undo.callback(bpy.utils.unregister_class, cls)
-
-        icons.open_icons()
-        undo.callback(icons.close_icons)
-        for pictures in (dispersion_panels, preset_pictures):
-            pictures.open_pictures()
-            undo.callback(pictures.close_pictures)
-
-        bpy.types.Scene.nested_dielectric_active = bpy.props.IntProperty(
-            name="Active Medium", get=media_rows.get_active, set=media_rows.set_active, options=set()
-        )
-        undo.callback(delattr, bpy.types.Scene, "nested_dielectric_active")
-        bpy.types.WindowManager.nested_dielectric_places = bpy.props.CollectionProperty(
-            type=media_rows.NestedDielectricPlace
-        )
-        undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_places")
+        pictures.open_pictures()
+        undo.callback(pictures.close_pictures)
+        undo.callback(preset_pictures.forget_items)
+        for owner, name, make in _PROPERTIES:
+            setattr(owner, name, make())
+            undo.callback(delattr, owner, name)
         undo.callback(media_rows.forget_wanted)
-
-        for name, draw in (*notices.PLACES, *medium_panels.PLACES):
-            place = getattr(bpy.types, name)
-            place.append(draw)
-            undo.callback(place.remove, draw)
-
-        bpy.types.WindowManager.nested_dielectric_presets = bpy.props.PointerProperty(
-            type=preset_menus.NestedDielectricPresetChoice, options={"SKIP_SAVE"}
-        )
-        undo.callback(delattr, bpy.types.WindowManager, "nested_dielectric_presets")
-
-        for add, menu, entry in (
-            ("prepend", bpy.types.VIEW3D_MT_object, object_menu.draw_entry),
-            ("append", bpy.types.NODE_MT_category_shader_shader, add_menu.draw_entry),
-        ):
-            getattr(menu, add)(entry)
-            undo.callback(menu.remove, entry)
-
+        _add_drawings(undo)
         asset_library.follow(preferences.preference("asset_library"))
         undo.callback(asset_library.follow, False)
-
-        for handlers, handler in (
-            (bpy.app.handlers.render_init, warn_before_render),
-            (bpy.app.handlers.load_post, mend_materials),
-            (bpy.app.handlers.blend_import_post, mend_materials),
-            (bpy.app.handlers.blend_import_pre, dropped.note_before),
-            (bpy.app.handlers.blend_import_post, dropped.note_appended),
-            *((handlers, media_list.forget_media) for handlers in _CHANGES),
-        ):
-            handlers.append(handler)
-            undo.callback(handlers.remove, handler)
-
-        undo.callback(dropped.forget_appended)
-
+        _add_handlers(undo)
         live.install()
         undo.callback(live.remove)
-
         command = bpy.utils.register_cli_command("nested_dielectric", run_command)
         undo.callback(bpy.utils.unregister_cli_command, command)
-
         _registered = undo.pop_all()
     text = blender_problem() or blender_note()
     if text:
         print(f"Nested Dielectric: {text}", file=sys.stderr)
 
 
+def _add_drawings(undo: ExitStack) -> None:
+    """Let Blender's own panels, headers and menus show what the extension adds to them."""
+    places = [("append", getattr(bpy.types, name), draw) for name, draw in (*notices.PLACES, *medium_panels.PLACES)]
+    places += [
+        ("prepend", bpy.types.VIEW3D_MT_object, object_menu.draw_entry),
+        ("append", bpy.types.NODE_MT_category_shader_shader, add_menu.draw_entry),
+    ]
+    for add, place, draw in places:
+        getattr(place, add)(draw)
+        undo.callback(place.remove, draw)
+
+
+def _add_handlers(undo: ExitStack) -> None:
+    """Let Blender call the handlers of the user interface; :mod:`live` adds those of the analysis after them."""
+    for handlers, handler in (
+        (bpy.app.handlers.render_init, warn_before_render),
+        (bpy.app.handlers.load_post, mend_materials),
+        (bpy.app.handlers.blend_import_post, mend_materials),
+        (bpy.app.handlers.blend_import_pre, dropped.note_before),
+        (bpy.app.handlers.blend_import_post, dropped.note_appended),
+        *((handlers, media_list.forget_media) for handlers in _CHANGES),
+    ):
+        handlers.append(handler)
+        undo.callback(handlers.remove, handler)
+    undo.callback(dropped.forget_appended)
+
+
 def is_registered() -> bool:
-    """Whether what :func:`register` puts in is in."""
+    """Return whether what :func:`register` puts in is in."""
     return _registered is not None
 
 
@@ -140,8 +167,9 @@ def warn_before_render(scene: bpy.types.Scene, *_: object) -> None:
 
 @bpy.app.handlers.persistent
 def mend_materials(*_: object) -> None:
-    """Make materials right that a file, or what is appended from one, has from a Blender or an extension to which this
-    Blender's Cycles was unknown.
+    """Make materials right that come from a Blender or an extension to which this Blender's Cycles was unknown.
+
+    They come with a file that is opened, or with what is appended from one.
     """
     if blender_problem():
         return
@@ -152,7 +180,7 @@ def mend_materials(*_: object) -> None:
 
 
 def run_command(arguments: list[str]) -> int:
-    """``blender --command nested_dielectric``."""
+    """Run ``blender --command nested_dielectric`` and return its exit code."""
     from . import cli
 
     return cli.main(arguments)

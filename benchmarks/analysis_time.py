@@ -16,13 +16,15 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "helpers"))
 
 import bpy
+from bench_arrays import Body
 from bench_report import markdown
-from bench_scenes import Body, ball, droplets, iced_water_scene
+from bench_scenes import droplets, iced_water_scene
+from bench_shapes import ball
 from bench_worker import add_bodies, nested
 from scenes import new_scene
 
 import nested_dielectric as nd
-from nested_dielectric.analysis import analysis
+from nested_dielectric.analysis import surroundings
 from nested_dielectric.preparation import live
 
 STEPS = 5
@@ -75,7 +77,7 @@ def measured(title: str) -> list[float]:
     steps: list[float] = []
 
     def follow(_, depsgraph) -> None:
-        steps.append(milliseconds(lambda: analysis.follow_or_distrust(scene, depsgraph)))
+        steps.append(milliseconds(lambda: surroundings.update_or_invalidate(scene, depsgraph)))
 
     bpy.app.handlers.depsgraph_update_post.append(follow)
     try:

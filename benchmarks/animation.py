@@ -24,29 +24,16 @@ from mathutils import Euler
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
+from bench_arrays import BenchScene, Body, View, banded_sky
 from bench_errors import block_means, relative_error
 from bench_report import LABELS, markdown, millionths, renew
-from bench_scenes import (
-    GLASS,
-    GLASS_PRIORITY,
-    ICE,
-    ICE_PRIORITY,
-    WATER,
-    WATER_PRIORITY,
-    BenchScene,
-    Body,
-    View,
-    banded_sky,
-    moved,
-    taken_arrays,
-    turned,
-    turned_profile,
-)
+from bench_scenes import GLASS, GLASS_PRIORITY, ICE, ICE_PRIORITY, WATER, WATER_PRIORITY
+from bench_shapes import moved, taken_arrays, turned, turned_profile
 from bench_worker import Cost, State, Worker, now, sampling_of, save
 from hand_split import split
 from scenes import read_picture
 
-from nested_dielectric.demo import iced_water
+from nested_dielectric.demo import glassware
 
 FRAMES = 24
 EVERY = {"split": 1, "cut": 1, "asking": 4}
@@ -54,7 +41,7 @@ EVERY = {"split": 1, "cut": 1, "asking": 4}
 
 TUMBLING = "Ice"
 PLACE = (0.04, -0.03, 0.66)
-WATER_PROFILE: tuple[iced_water.Corner, ...] = (
+WATER_PROFILE: tuple[glassware.Corner, ...] = (
     (0.0, 0.142, 0.0),
     (0.38, 0.152, 0.083),
     (0.4155, 0.74, 0.0),
@@ -71,12 +58,12 @@ def turn(frame: int) -> Euler:
 
 def scene_on(frame: int) -> BenchScene:
     """An ice cube that floats in a tumbler of water, as it is turned on a frame; on frame 0, before it is placed."""
-    ice = moved(taken_arrays(iced_water.ice_mesh(1)), (0.0, 0.0, 0.0), 1.3)
+    ice = moved(taken_arrays(glassware.ice_mesh(1)), (0.0, 0.0, 0.0), 1.3)
     ice = ice[0] - ice[0].mean(axis=0), ice[1]
     if frame:
         ice = turned(ice, turn(frame))
     bodies = (
-        Body("Tumbler", *turned_profile(iced_water.TUMBLER_OUTSIDE + iced_water.TUMBLER_INSIDE), GLASS_PRIORITY, GLASS),
+        Body("Tumbler", *turned_profile(glassware.TUMBLER_OUTSIDE + glassware.TUMBLER_INSIDE), GLASS_PRIORITY, GLASS),
         Body(TUMBLING, *moved(ice, PLACE), ICE_PRIORITY, ICE),
         Body("Water", *turned_profile(WATER_PROFILE), WATER_PRIORITY, WATER),
     )

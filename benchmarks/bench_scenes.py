@@ -8,194 +8,36 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
-from math import cos, pi, radians, sin, sqrt
+from math import cos, pi, sin, sqrt
 from pathlib import Path
 
 import bpy  # before bmesh and mathutils, which live inside it
 
 import bmesh  # isort: skip
 import numpy as np
-from mathutils import Euler, Matrix, Vector
+from bench_arrays import BenchScene, Body, View, banded_sky
+from bench_shapes import (
+    ball,
+    box,
+    brilliant,
+    built,
+    mesh_arrays,
+    mesh_of,
+    moved,
+    step_cut,
+    taken_arrays,
+    turned,
+    turned_profile,
+)
+from mathutils import Euler, Vector
 
-from nested_dielectric.demo import iced_water
-from nested_dielectric.scene.shapes import triangles_of
+from nested_dielectric.demo import glassware, iced_water
 
 AIR, WATER, ICE, GLASS = 1.0, 1.33, 1.31, 1.52
 WINE = 1.345
 
 BUBBLE_PRIORITY, GLASS_PRIORITY, ICE_PRIORITY, WINE_PRIORITY, WATER_PRIORITY = 5, 10, 20, 25, 30
-
-
-@dataclass(frozen=True, eq=False)
-class Body:
-    """A closed surface and what is in it.
-
-    `vertices` (n, 3) float64 in world space; `triangles` (m, 3) int, counter-clockwise seen from outside. The lowest
-    `priority` wins where bodies overlap; bodies of one priority do not overlap. `ior` is the index at 587.56 nm, `abbe`
-    the Abbe number of a medium that disperses, 0 of one that does not. Bodies that share one shape share one array
-    `triangles`.
-    """
-
-    name: str
-    vertices: np.ndarray
-    triangles: np.ndarray
-    priority: int
-    ior: float
-    smooth: bool = False
-    abbe: float = 0.0
-
-
-@dataclass(frozen=True)
-class View:
-    """A pinhole camera for square pictures, Z up; `angle_degrees` is the whole field of view."""
-
-    location: tuple[float, float, float]
-    target: tuple[float, float, float]
-    angle_degrees: float
-
-
-@dataclass(frozen=True, eq=False)
-class BenchScene:
-    """What is rendered.
-
-    `environment` (h, w, 3) float32, linear: radiance by direction as in :func:`directions`.
-    `nested_media_cross` is whether surfaces of bodies cross; where not, they are apart or one wholly inside another.
-    """
-
-    name: str
-    title: str
-    bodies: tuple[Body, ...]
-    view: View
-    environment: np.ndarray
-    nested_media_cross: bool
-
-
-# Sky ----------------------------------------------------------------------------------------------------------------
-
-
-def directions(height: int, width: int) -> np.ndarray:
-    """Unit vectors that the pixels of an equirectangular picture stand for, (height, width, 3).
-
-    As in Blender: the first row is up (+Z), the middle column is +X, and columns to the left of it turn towards +Y.
-    """
-    azimuth = pi - 2.0 * pi * (np.arange(width) + 0.5) / width
-    polar = pi * (np.arange(height) + 0.5) / height
-    x = np.sin(polar)[:, None] * np.cos(azimuth)
-    y = np.sin(polar)[:, None] * np.sin(azimuth)
-    z = np.broadcast_to(np.cos(polar)[:, None], x.shape)
-    return np.stack([x, y, z], axis=-1)
-
-
-def banded_sky(frequency: float = 9.0, height: int = 512) -> np.ndarray:
-    """Soft tilted bands, from a warm ground to a blue zenith; (height, 2 height, 3) float32 between 0.1 and 1.3.
-
-    `frequency` is that of the bands, in radians over a unit of direction.
-    """
-    ways = directions(height, 2 * height)
-    up = 0.5 + 0.5 * ways[..., 2:]
-    blend = up * up * (3.0 - 2.0 * up)
-    ground, zenith = np.array([1.3, 0.85, 0.45]), np.array([0.35, 0.75, 1.3])
-    tilted = np.array([0.48, -0.2, 0.85])
-    bands = 0.5 + 0.5 * np.sin(frequency * ways @ (tilted / np.linalg.norm(tilted)) + 0.7)
-    return ((ground + (zenith - ground) * blend) * (0.3 + 0.7 * bands[..., None])).astype(np.float32)
-
-
-# Shapes -------------------------------------------------------------------------------------------------------------
-
-
-def mesh_arrays(mesh: bpy.types.Mesh, matrix: Matrix | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and triangles of a mesh, placed by a matrix."""
-    vertices, triangles = triangles_of(mesh)
-    vertices = vertices.astype(np.float64)
-    if matrix is not None:
-        placed = np.array(matrix, np.float64)
-        vertices = vertices @ placed[:3, :3].T + placed[:3, 3]
-    return vertices, triangles.astype(np.int64)
-
-
-def mesh_of(name: str, vertices: np.ndarray, triangles: np.ndarray, smooth: bool = False) -> bpy.types.Mesh:
-    """A mesh of vertices and triangles; much faster than from_pydata."""
-    mesh = bpy.data.meshes.new(name)
-    mesh.vertices.add(len(vertices))
-    mesh.vertices.foreach_set("co", np.ascontiguousarray(vertices, np.float32).ravel())
-    mesh.loops.add(triangles.size)
-    mesh.loops.foreach_set("vertex_index", np.ascontiguousarray(triangles, np.int32).ravel())
-    mesh.polygons.add(len(triangles))
-    mesh.polygons.foreach_set("loop_start", np.arange(0, triangles.size, 3, dtype=np.int32))
-    if not smooth:
-        sharp = mesh.attributes.new("sharp_face", "BOOLEAN", "FACE")
-        sharp.data.foreach_set("value", np.ones(len(triangles), bool))
-    mesh.update()
-    return mesh
-
-
-def taken_arrays(mesh: bpy.types.Mesh, matrix: Matrix | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """:func:`mesh_arrays` of a mesh that nothing else needs."""
-    arrays = mesh_arrays(mesh, matrix)
-    bpy.data.meshes.remove(mesh)
-    return arrays
-
-
-def built(build: Callable[[bmesh.types.BMesh], None]) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and triangles of what `build(bm)` makes."""
-    shape = bmesh.new()
-    build(shape)
-    bmesh.ops.recalc_face_normals(shape, faces=shape.faces)
-    mesh = bpy.data.meshes.new("Shape")
-    shape.to_mesh(mesh)
-    shape.free()
-    return taken_arrays(mesh)
-
-
-def ball(subdivisions: int) -> tuple[np.ndarray, np.ndarray]:
-    """A unit icosphere of 20 * 4 ** (subdivisions - 1) triangles."""
-    return built(lambda bm: bmesh.ops.create_icosphere(bm, subdivisions=subdivisions, radius=1.0))
-
-
-def box(low: Sequence[float], high: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
-    """A box between two corners."""
-    low, high = Vector(low), Vector(high)
-    matrix = Matrix.Translation((low + high) / 2.0) @ Matrix.Diagonal((*(high - low), 1.0))
-    return built(lambda bm: bmesh.ops.create_cube(bm, size=1.0, matrix=matrix))
-
-
-def moved(shape: tuple[np.ndarray, np.ndarray], offset: Sequence[float], size: float | Sequence[float] = 1.0):
-    """A shape scaled, then moved. The triangles stay the same array."""
-    vertices, triangles = shape
-    return vertices * np.asarray(size) + np.asarray(offset), triangles
-
-
-def turned(shape: tuple[np.ndarray, np.ndarray], rotation: Euler):
-    """A shape turned around the origin."""
-    vertices, triangles = shape
-    return vertices @ np.array(rotation.to_matrix(), np.float64).T, triangles
-
-
-def joined(shapes: Sequence[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
-    """One shape of many."""
-    starts = np.cumsum([0] + [len(vertices) for vertices, _ in shapes[:-1]])
-    triangles = [triangles + start for (_, triangles), start in zip(shapes, starts, strict=True)]
-    return np.concatenate([vertices for vertices, _ in shapes]), np.concatenate(triangles)
-
-
-def turned_profile(corners: Sequence[iced_water.Corner]) -> tuple[np.ndarray, np.ndarray]:
-    """The body that a rounded profile makes turned around Z."""
-    return taken_arrays(iced_water.lathe(without_straight_points(iced_water.rounded(corners))))
-
-
-def without_straight_points(profile: Sequence[iced_water.Point]) -> list[iced_water.Point]:
-    """A profile without the points on straight lines between others, which flat shading does not need."""
-    points = np.array(profile)
-    points = points[np.concatenate([[True], np.any(np.abs(np.diff(points, axis=0)) > 1e-9, axis=1)])]
-    before, after = np.diff(points[:-1], axis=0), np.diff(points[1:], axis=0)
-    turn = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    bent = np.abs(turn) > 1e-3 * np.linalg.norm(before, axis=1) * np.linalg.norm(after, axis=1)
-    return [tuple(point) for point in points[np.concatenate([[True], bent, [True]])]]
-
-
-# Scenes -------------------------------------------------------------------------------------------------------------
 
 
 def sphere() -> BenchScene:
@@ -276,13 +118,13 @@ def shells() -> BenchScene:
     return BenchScene("shells", "12 nested shells", bodies, view, banded_sky(), False)
 
 
-BUCKET_OUTSIDE: tuple[iced_water.Corner, ...] = (
+BUCKET_OUTSIDE: tuple[glassware.Corner, ...] = (
     (0.0, 0.0, 0.0),
     (0.72, 0.0, 0.08),
     (1.0, 1.35, 0.028),
 )
-BUCKET_INSIDE: tuple[iced_water.Corner, ...] = ((0.93, 1.35, 0.028), (0.655, 0.09, 0.1), (0.0, 0.09, 0.0))
-BUCKET_WATER: tuple[iced_water.Corner, ...] = (
+BUCKET_INSIDE: tuple[glassware.Corner, ...] = ((0.93, 1.35, 0.028), (0.655, 0.09, 0.1), (0.0, 0.09, 0.0))
+BUCKET_WATER: tuple[glassware.Corner, ...] = (
     (0.0, 0.08, 0.0),
     (0.665, 0.08, 0.1),
     (0.8716, 1.03, 0.0),
@@ -291,7 +133,7 @@ BUCKET_WATER: tuple[iced_water.Corner, ...] = (
 """The bucket's inside grown by 0.01, up to the water's level."""
 
 BOTTLE_FOOT = 0.2
-BOTTLE: tuple[iced_water.Corner, ...] = (
+BOTTLE: tuple[glassware.Corner, ...] = (
     (0.0, 0.0, 0.0),
     (0.33, 0.0, 0.05),
     (0.33, 1.25, 0.22),
@@ -305,7 +147,7 @@ BOTTLE: tuple[iced_water.Corner, ...] = (
 )
 """Outside, around the mouth, inside; above its foot."""
 
-BOTTLE_WINE: tuple[iced_water.Corner, ...] = ((0.0, 0.08, 0.0), (0.3, 0.06, 0.05), (0.3, 1.0, 0.0), (0.0, 1.0, 0.0))
+BOTTLE_WINE: tuple[glassware.Corner, ...] = ((0.0, 0.08, 0.0), (0.3, 0.06, 0.05), (0.3, 1.0, 0.0), (0.0, 1.0, 0.0))
 
 
 def bucket_ice() -> list[Body]:
@@ -315,7 +157,7 @@ def bucket_ice() -> list[Body]:
     bodies = []
     for place, (size, distance, angle, height) in enumerate(places):
         tilt = Euler((0.2 * sin(2.1 * place), 0.2 * cos(1.7 * place), angle + 0.3 * sin(3.0 * place)))
-        cube = turned(moved(taken_arrays(iced_water.ice_mesh(place + 1)), (0.0, 0.0, 0.0), size), tilt)
+        cube = turned(moved(taken_arrays(glassware.ice_mesh(place + 1)), (0.0, 0.0, 0.0), size), tilt)
         offset = (distance * cos(angle), distance * sin(angle), height)
         bodies.append(Body(f"Ice {place}", *moved(cube, offset), ICE_PRIORITY, ICE))
     return bodies
@@ -336,7 +178,7 @@ def bucket() -> BenchScene:
 
 
 FACETED_SEGMENTS = 48
-FACETED_TUMBLER: tuple[iced_water.Point, ...] = (
+FACETED_TUMBLER: tuple[glassware.Point, ...] = (
     (0.0, 0.0),
     (0.38, 0.0),
     (0.46, 1.0),
@@ -344,11 +186,11 @@ FACETED_TUMBLER: tuple[iced_water.Point, ...] = (
     (0.335, 0.15),
     (0.0, 0.15),
 )
-FACETED_WATER: tuple[iced_water.Point, ...] = ((0.0, 0.142), (0.343, 0.142), (0.402, 0.74), (0.0, 0.74))
+FACETED_WATER: tuple[glassware.Point, ...] = ((0.0, 0.142), (0.343, 0.142), (0.402, 0.74), (0.0, 0.74))
 """The tumbler's inside grown by 0.008, up to the water's level."""
 
 
-def faceted(profile: Sequence[iced_water.Point]) -> tuple[np.ndarray, np.ndarray]:
+def faceted(profile: Sequence[glassware.Point]) -> tuple[np.ndarray, np.ndarray]:
     """A profile from axis to axis turned around Z in few steps, each of its lines a single strip of faces."""
 
     def build(bm):
@@ -393,60 +235,6 @@ def faceted_scene() -> BenchScene:
     )
     view = View((0.0, -4.3, 1.75), (0.012, 0.0, 0.49), 17.0)
     return BenchScene("faceted", "a tumbler of few, large faces with ice and water", bodies, view, banded_sky(), True)
-
-
-Facet = tuple[float, float, float]
-"""Angle from the horizontal, negative below the girdle; azimuth, both in degrees; distance of its plane."""
-
-
-def cut(facets: Sequence[Facet], girdle: int) -> tuple[np.ndarray, np.ndarray]:
-    """A stone of radius 1 cut along planes from a prism with that many sides."""
-
-    def build(bm):
-        bmesh.ops.create_cone(
-            bm, cap_ends=True, segments=girdle, radius1=1.0, radius2=1.0, depth=4.0, matrix=Matrix.Identity(4)
-        )
-        for slope, azimuth, distance in facets:
-            a, b = radians(abs(slope)), radians(azimuth)
-            normal = Vector((sin(a) * cos(b), sin(a) * sin(b), cos(a) if slope >= 0.0 else -cos(a)))
-            geometry = bm.verts[:] + bm.edges[:] + bm.faces[:]
-            bmesh.ops.bisect_plane(
-                bm, geom=geometry, dist=1e-5, plane_co=normal * distance, plane_no=normal, clear_outer=True
-            )
-            bmesh.ops.holes_fill(bm, edges=bm.edges, sides=0)
-
-    return built(build)
-
-
-def ring(slope: float, count: int, turn: float, radius: float, height: float) -> list[Facet]:
-    """Facets around a stone, every one through the point at that radius and height; `turn` in steps."""
-    a = radians(abs(slope))
-    distance = radius * sin(a) + (height if slope >= 0.0 else -height) * cos(a)
-    return [(slope, 360.0 * (step + turn) / count, distance) for step in range(count)]
-
-
-HALF_GIRDLE = 0.025
-
-
-def brilliant() -> tuple[np.ndarray, np.ndarray]:
-    """The round brilliant: table, 8 stars, 8 bezels, 16 upper and 16 lower halves, 8 pavilion mains."""
-    facets = [(0.0, 0.0, 0.33)]
-    facets += ring(34.5, 8, 0.0, 1.0, HALF_GIRDLE)
-    facets += ring(22.0, 8, 0.5, 0.775, 0.205)
-    facets += ring(40.5, 16, 0.5, 1.0, HALF_GIRDLE)
-    facets += ring(-40.8, 8, 0.0, 1.0, -HALF_GIRDLE)
-    facets += ring(-42.2, 16, 0.5, 1.0, -HALF_GIRDLE)
-    return cut(facets, 64)
-
-
-def step_cut() -> tuple[np.ndarray, np.ndarray]:
-    """An octagon of steps, three above and three below the girdle."""
-    facets = [(0.0, 0.0, 0.3)]
-    for slope, radius, height in ((48.0, 1.0, HALF_GIRDLE), (38.0, 0.85, 0.19), (27.0, 0.75, 0.255)):
-        facets += ring(slope, 8, 0.5, radius * cos(pi / 8), height)
-    for slope, radius, height in ((-58.0, 1.0, -HALF_GIRDLE), (-48.0, 0.85, -0.25), (-40.0, 0.6, -0.51)):
-        facets += ring(slope, 8, 0.5, radius * cos(pi / 8), height)
-    return cut(facets, 8)
 
 
 def gems() -> BenchScene:

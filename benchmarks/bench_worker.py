@@ -22,14 +22,15 @@ sys.path.insert(0, str(HERE.parent / "tests" / "helpers"))
 
 import bpy
 import numpy as np
-from bench_scenes import BenchScene, Body, mesh_of
+from bench_arrays import BenchScene, Body
+from bench_shapes import mesh_of
 from hand_split import Piece, Split, split
 from mathutils import Matrix
 from scenes import add, add_camera, cycles_glass, native, new_scene, render
 
 import nested_dielectric as nd
 from nested_dielectric.model.dispersion import abbe_ior
-from nested_dielectric.scene.materials import material_table
+from nested_dielectric.scene.material_spectra import material_table
 
 FIRST, LAST = "| Sample 0/", "| Finished"
 """What Cycles says before its first sample, when all is loaded and compiled, and after its last."""

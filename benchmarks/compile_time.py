@@ -1,8 +1,8 @@
 """CPU time until the first sample of 50 balls, each of its own material: mostly the compilation of their shaders.
 
-Run as ``.venv/bin/python benchmarks/compile_time.py [ROUNDS]``. Cycles' own Glass through OSL, media that know they are alone, media
-that ask the scene, and Glass and media in Cycles' own nodes without OSL are loaded in turn; the medians over the rounds and their
-ratios to Glass of the same kind are printed.
+Run as ``.venv/bin/python benchmarks/compile_time.py [ROUNDS]``. Cycles' own Glass through OSL, media that know they are alone,
+media that ask the scene, and Glass and media in Cycles' own nodes without OSL are loaded in turn. The medians over the rounds
+and their ratios to Glass of the same kind are printed.
 """
 
 import statistics

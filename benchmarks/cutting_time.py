@@ -15,8 +15,9 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "helpers"))
 
 import bpy
+from bench_arrays import BenchScene
 from bench_report import markdown, renew
-from bench_scenes import BenchScene, bucket, droplets, iced_water_scene
+from bench_scenes import bucket, droplets, iced_water_scene
 from bench_worker import NESTED, Cost, add_bodies, draw, nested, now
 from scenes import add_camera, new_scene
 

@@ -27,6 +27,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from nested_dielectric.nodes.names import COORDINATE_NODE, TABLES_NODE
+from nested_dielectric.nodes.osl import COORDINATE_FILE, compiled
+from nested_dielectric.nodes.spectral_tables import set_table
+
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "helpers"))
 
@@ -38,11 +42,11 @@ from matplotlib.figure import Figure
 from scenes import add_camera, add_mesh, add_sphere, render, set_world
 from test_dispersion import APEX, CLEAR, SF11, dispersing_scene, index, material, prism, set_band_world
 
-from nested_dielectric.model.dispersion import LINE_D, mean_cauchy_distances
+from nested_dielectric.model.dispersion import LINE_D, mean_inverse_square_offsets
 from nested_dielectric.model.presets import load_preset
 from nested_dielectric.model.shader_source import inlined_source
-from nested_dielectric.nodes import node_group
-from nested_dielectric.scene.materials import dielectric_node, material_table
+from nested_dielectric.scene.material_spectra import material_table
+from nested_dielectric.scene.materials import dielectric_node
 
 DIAMOND = load_preset("diamond").parameters
 
@@ -168,30 +172,30 @@ def draw_by_time(glass: bpy.types.Material) -> None:
 
 def draw_at_random(glass: bpy.types.Material) -> None:
     """Draw every path's wavelength by itself."""
-    source = inlined_source(node_group.COORDINATE_FILE)
+    source = inlined_source(COORDINATE_FILE)
     if source.count(TIME_NUMBER) != 1:
-        raise RuntimeError(f"{node_group.COORDINATE_FILE} no longer has the random number {TIME_NUMBER!r} once")
+        raise RuntimeError(f"{COORDINATE_FILE} no longer has the random number {TIME_NUMBER!r} once")
     source = source.replace(TIME_NUMBER, RANDOM_NUMBER)
-    node = dielectric_node(glass).node_tree.nodes[node_group.COORDINATE_NODE]
+    node = dielectric_node(glass).node_tree.nodes[COORDINATE_NODE]
     text = bpy.data.texts.new("Random")
     text.from_string(source)
     node.script = text
-    node.bytecode = node_group.compiled(source)
+    node.bytecode = compiled(source)
     node.bytecode_hash = hashlib.md5(node.bytecode.encode(), usedforsecurity=False).hexdigest()
 
 
 def draw_three_channels(glass: bpy.types.Material) -> None:
     """Put the wavelengths at which red, green and blue have their mean index in the place of the spectrum."""
     node = dielectric_node(glass)
-    means = mean_cauchy_distances(material_table(glass))
+    means = mean_inverse_square_offsets(material_table(glass))
     table = np.zeros((3, 4), np.float32)
     table[:, :3] = 3.0 * np.eye(3)
     table[:, 3] = 1e3 * (means + (LINE_D * 1e-3) ** -2) ** -0.5
-    tables = node.node_tree.nodes[node_group.TABLES_NODE]
+    tables = node.node_tree.nodes[TABLES_NODE]
     tables.image = None
     tables.interpolation = "Closest"
-    node_group.set_table(node, table)
-    if not np.allclose(mean_cauchy_distances(material_table(glass)), means, rtol=1e-4):
+    set_table(node, table)
+    if not np.allclose(mean_inverse_square_offsets(material_table(glass)), means, rtol=1e-4):
         raise RuntimeError("three wavelengths with other means than the spectrum's")
 
 

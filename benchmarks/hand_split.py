@@ -16,7 +16,9 @@ from typing import NamedTuple
 
 import bpy  # before mathutils, which lives inside it
 import numpy as np
-from bench_scenes import AIR, SCENES, Body, joined, mesh_arrays, mesh_of
+from bench_arrays import Body
+from bench_scenes import AIR, SCENES
+from bench_shapes import joined, mesh_arrays, mesh_of
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 

@@ -1,12 +1,10 @@
 /* Numbers that a link or a script may give, bounded to what physics allows.
  *
- * parameters.h is made of addon/parameters.py: NAME_LIMITS are least, most and default of a parameter. */
+ * contract.h is made by addon/model/osl_contract.py of what Python knows, too: NAME_LIMITS are least, most and default of a
+ * parameter, NAME_DEFAULT is its default. */
 #pragma once
 
-#include "parameters.h"
-
-/* Nearly the largest float, which OSL takes an infinite constant for. */
-#define LARGEST 3.4e38
+#include "contract.h"
 
 /* False for NaN and infinity. A comparison with NaN is false where OSL folds it and true where it is computed, so each
  * half serves one of the two; isfinite() does not fold, nor does all that comes after a choice of statements. */
@@ -47,4 +45,9 @@ int has_direction(vector v)
 {
   float square = dot(v, v);
   return square > 0.0 && is_number(square);
+}
+
+float max_component(color c)
+{
+  return max(c[0], max(c[1], c[2]));
 }

@@ -1,24 +1,9 @@
-/* How an index of refraction changes with the wavelength, and what carries a path's wavelength. Wavelengths are in nm. */
+/* How an index of refraction changes with the wavelength. Wavelengths are in nm. */
 #pragma once
 
 #include "bounds.h"
 
-#define DISPERSION_ABBE 0
-#define DISPERSION_SELLMEIER 1
-#define DISPERSION_JF 2
-
-/* Fraunhofer's lines (ISO 7944). IOR is the index at d. */
-#define LINE_C 656.2725
-#define LINE_D 587.5618
-#define LINE_F 486.1327
-
-/* Ends of the visible spectrum, as in the spectral tables. */
-#define SHORTEST 380.0
-#define LONGEST 780.0
-
-/* What Cycles calls the time where it samples none: in the viewport, and without motion blur. */
-#define STILL_TIME 0.5
-
+/* The artist's parameters of a medium's dispersion. */
 struct DispersionCurve {
   int disperses; /* starts dispersion; light that is split already is bent by every medium's own curve */
   int model;
@@ -28,23 +13,34 @@ struct DispersionCurve {
   float spread;       /* JF's */
 };
 
-/* What a medium does to all wavelengths: the index of white light, and how it spreads around it as Cauchy's second term
+DispersionCurve dispersion_curve(int disperses, int model, float abbe, vector sellmeier_b, vector sellmeier_c, float spread)
+{
+  DispersionCurve d = {disperses,
+                       bounded(model, DISPERSION_MODEL_LIMITS),
+                       bounded(abbe, ABBE_LIMITS),
+                       bounded(sellmeier_b, SELLMEIER_B_LIMITS),
+                       bounded(sellmeier_c, SELLMEIER_C_LIMITS),
+                       bounded(spread, DISPERSION_LIMITS)};
+  return d;
+}
+
+/* What a medium does to all wavelengths: the index at the d line, and how it spreads around it as Cauchy's second term
  * has it, in nm^2. */
-struct Index {
+struct DispersiveIor {
   float at_path; /* at the path's wavelength; that of white light while it has none */
-  float white;
-  float slope;
-  int regular; /* the slope describes it */
+  float white;   /* at the d line */
+  float cauchy_b;
+  int nearly_linear; /* cauchy_b describes it */
 };
 
 /* An index of refraction that Snell's law can use, whatever a curve comes to. */
-float usable_ior(float ior)
+float sanitized_ior(float ior)
 {
   return select(1.0, ior, within(ior, 1e-3, 1e3, 1.0));
 }
 
 /* How far a wavelength is from the d line, in the units Cauchy's second term is linear in. */
-float cauchy_distance(float wavelength)
+float inverse_square_offset(float wavelength)
 {
   return 1.0 / (wavelength * wavelength) - 1.0 / (LINE_D * LINE_D);
 }
@@ -72,45 +68,47 @@ float ior_at(float ior, DispersionCurve d, float wavelength)
   if (d.model == DISPERSION_JF)
     return ior + jf_offset(d.spread, wavelength);
   if (d.abbe > 0.0)
-    return ior + (ior - 1.0) / d.abbe * cauchy_distance(wavelength) / (cauchy_distance(LINE_F) - cauchy_distance(LINE_C));
+    return ior + (ior - 1.0) / d.abbe * inverse_square_offset(wavelength) /
+                     (inverse_square_offset(LINE_F) - inverse_square_offset(LINE_C));
   return ior;
 }
 
 /* The index of a medium. `splits`: how it spreads matters; wavelength: 0 for white light. */
-Index medium_index(float ior, DispersionCurve d, int splits, float wavelength)
+DispersiveIor dispersive_ior(float ior, DispersionCurve d, int splits, float wavelength)
 {
-  Index n;
+  DispersiveIor n;
   /* A medium of JF's that splits no light has its index as it was typed, as there. */
-  n.white = usable_ior((d.model == DISPERSION_JF && d.disperses) ? ior + jf_offset(d.spread, LINE_D) : ior);
+  n.white = sanitized_ior((d.model == DISPERSION_JF && d.disperses) ? ior + jf_offset(d.spread, LINE_D) : ior);
   n.at_path = n.white;
-  n.slope = 0.0;
-  n.regular = 1;
+  n.cauchy_b = 0.0;
+  n.nearly_linear = 1;
   if (splits) {
     float spread = ior_at(ior, d, LINE_F) - ior_at(ior, d, LINE_C);
-    float slope = spread / (cauchy_distance(LINE_F) - cauchy_distance(LINE_C));
-    n.slope = select(0.0, slope, is_number(slope));
+    float cauchy_b = spread / (inverse_square_offset(LINE_F) - inverse_square_offset(LINE_C));
+    n.cauchy_b = select(0.0, cauchy_b, is_number(cauchy_b));
     /* No glass is further off at the ends. */
-    n.regular = abs(ior_at(ior, d, SHORTEST) - n.white - n.slope * cauchy_distance(SHORTEST)) < 0.05 &&
-                abs(ior_at(ior, d, LONGEST) - n.white - n.slope * cauchy_distance(LONGEST)) < 0.05;
+    n.nearly_linear = abs(ior_at(ior, d, SHORTEST) - n.white - n.cauchy_b * inverse_square_offset(SHORTEST)) < 0.05 &&
+                      abs(ior_at(ior, d, LONGEST) - n.white - n.cauchy_b * inverse_square_offset(LONGEST)) < 0.05;
     if (wavelength > 0.0)
-      n.at_path = usable_ior(ior_at(ior, d, wavelength));
+      n.at_path = sanitized_ior(ior_at(ior, d, wavelength));
   }
   return n;
 }
 
-/* Ratio of two indices of white light's wavelength with that Cauchy distance. */
-float eta_at(Index from, Index to, float distance)
+/* Ratio of two indices at a wavelength with that offset. */
+float eta_at(DispersiveIor from, DispersiveIor to, float offset)
 {
-  return max(to.white + to.slope * distance, 1e-3) / max(from.white + from.slope * distance, 1e-3);
+  return max(to.white + to.cauchy_b * offset, 1e-3) / max(from.white + from.cauchy_b * offset, 1e-3);
 }
 
 /* The ratio of two indices of white light, and how far it spreads over the spectrum as a number of Abbe's kind: both are
- * near linear in the Cauchy distance. A ratio of 1 has no such number, so it is moved by what bends no light visibly. */
-float dispersing_ratio(Index outer, Index inner, output float inverse_abbe)
+ * near linear in the offset. A ratio of 1 has no such number. */
+float dispersing_ratio(DispersiveIor outer, DispersiveIor inner, output float inverse_abbe)
 {
   float ratio = eta_at(outer, inner, 0.0);
-  if (abs(ratio - 1.0) < 1e-4)
-    ratio = 1.0 + 1e-4;
-  inverse_abbe = (eta_at(outer, inner, cauchy_distance(LINE_F)) - eta_at(outer, inner, cauchy_distance(LINE_C))) / (ratio - 1.0);
+  if (abs(ratio - 1.0) < RATIO_MARGIN)
+    ratio = 1.0 + RATIO_MARGIN;
+  inverse_abbe = (eta_at(outer, inner, inverse_square_offset(LINE_F)) - eta_at(outer, inner, inverse_square_offset(LINE_C))) /
+                 (ratio - 1.0);
   return ratio;
 }

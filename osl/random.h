@@ -5,9 +5,9 @@
 #define RANDOM_NARROWING 1
 #define RANDOM_SLOPE 2 /* and 3 */
 #define RANDOM_REFLECTION 4
-#define RANDOM_LAMP 5  /* and 6 */
-#define RANDOM_LOBE 7  /* and 8 */
-#define RANDOM_LAMPS 9 /* and on */
+#define RANDOM_LIGHT_SAMPLE 5 /* and 6 */
+#define RANDOM_BSDF_SAMPLE 7  /* and 8 */
+#define RANDOM_LIGHT_CHOICE 9 /* and on */
 
 /* A number in [0, 1). Paths meet a surface in different points, so a hash of the point is as good as drawn. */
 float random(int purpose)

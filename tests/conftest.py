@@ -1,16 +1,37 @@
-"""Tests import their helpers as plain modules from this folder."""
+"""Tests by what they need: the folder of a test is its mark, and tests import from `helpers` alone.
+
+- `unit`: no scene, and nothing of Blender but `mathutils`. Marked `quick`, and `pure` where the file does not import Blender.
+- `blender`: Blender's data, panels, files and processes, but no picture of Cycles. Marked `quick`.
+- `render`: whatever renders, here or in a process of its own.
+"""
 
 import sys
 from pathlib import Path
 
 import pytest
 
-sys.path[:0] = [str(Path(__file__).parent / room) for room in ("helpers", "blender", "render")]
+FOLDER = Path(__file__).parent
+
+sys.path.insert(0, str(FOLDER / "helpers"))
 
 
 def pytest_collection_modifyitems(items):
-    """What takes no time comes first."""
+    """Mark tests by their folders; what takes no time comes first."""
+    for item in items:
+        room = item.path.relative_to(FOLDER).parts[0]
+        if room in ("unit", "blender"):
+            item.add_marker(pytest.mark.quick)
+        if room == "unit" and not hasattr(item.module, "bpy"):
+            item.add_marker(pytest.mark.pure)
     items.sort(key=lambda item: item.get_closest_marker("quick") is None)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def nothing_is_left_open():
+    """Each file begins with an empty scene."""
+    yield
+    if bpy := sys.modules.get("bpy"):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
 
 
 @pytest.fixture(autouse=True)
@@ -41,12 +62,12 @@ def renders_nothing(request):
 
 @pytest.fixture
 def registered():
-    """The extension is registered in an empty scene."""
-    import bpy
+    """The extension is registered in an empty scene, where the node group stands already."""
+    from scenes import empty_file
 
     import nested_dielectric as nd
 
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    empty_file(with_group=True)
     nd.register()
     yield
     nd.unregister()

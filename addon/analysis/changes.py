@@ -11,8 +11,8 @@ from typing import Any
 
 import bpy
 
-from ..model.parameters import PRIORITY_PROPERTY
-from ..nodes.node_group import OBJECT_PROPERTIES
+from ..model.parameter import PRIORITY_PROPERTY
+from ..nodes.names import OBJECT_PROPERTIES
 
 State = tuple[Any, ...]
 """Of a scene; two that are equal tell that nothing was changed between them."""
@@ -42,7 +42,7 @@ def uncounted() -> Iterator[None]:
 
 
 def count(depsgraph: bpy.types.Depsgraph) -> None:
-    """Heed what a depsgraph says that has changed."""
+    """Count what a depsgraph says that has changed."""
     global _counted
     if _counts and any(not isinstance(update.id, _NO_CONCERN) for update in depsgraph.updates):
         _counted += 1
@@ -57,7 +57,7 @@ def state_of(scene: bpy.types.Scene) -> State:
         (scene.frame_current, scene.frame_subframe),
         (render.use_simplify, render.use_motion_blur, render.motion_blur_shutter > 0.0),
         (render.engine, scene.cycles.device, scene.cycles.shading_system),
-        {key: plain(scene[key]) for key in scene.keys() if key.startswith("nd_") and key != REPORT_PROPERTY},
+        {key: plain(value) for key, value in scene.items() if key.startswith("nd_") and key != REPORT_PROPERTY},
         *(len(each) for each in (bpy.data.scenes, bpy.data.collections, bpy.data.materials, bpy.data.node_groups)),
         [(each.name, [obj.session_uid for obj in each.objects]) for each in scene.view_layers],
         [
@@ -73,7 +73,7 @@ def state_of(scene: bpy.types.Scene) -> State:
 
 
 def _of_hidden(obj: bpy.types.Object) -> State:
-    """What matters of an object that is not evaluated."""
+    """Return what matters of an object that is not evaluated."""
     materials = [slot.material.session_uid if slot.material else None for slot in obj.material_slots]
     return obj.hide_render, obj.hide_viewport, len(obj.modifiers), materials
 

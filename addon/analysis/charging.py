@@ -81,6 +81,7 @@ def left_to_volumes(
 
 
 def _can_be_given_back(winner: Filling, loser: Filling) -> bool:
+    """Return whether surfaces of a winner can give back what the volume of a loser takes within it."""
     if loser.coefficients is None or winner.priority == loser.priority:
         return False
     return winner.chord * min(loser.coefficients) <= THIN and winner.chord * max(loser.coefficients) <= READABLE

@@ -11,8 +11,10 @@ from collections.abc import Iterable, Iterator
 
 import bpy
 
-from ..scene import rays
-from . import cutting
+from ..scene import ray_visibility
+from .baked_cut import is_baked
+from .copied_settings import copy_settings
+from .cut_collection import exchange_mesh, find_nodes_modifier, surfaces_of
 
 LIT = ("MATERIAL", "RENDERED")
 """Kinds of shading of viewports that show materials."""
@@ -24,6 +26,7 @@ def lit_scenes(windows: Iterable[bpy.types.Window]) -> set[bpy.types.Scene]:
 
 
 def _is_lit(window: bpy.types.Window, space: bpy.types.SpaceView3D) -> bool:
+    """Return whether a viewport shows materials: rendered, or previewed while no animation plays."""
     kind = space.shading.type
     if kind == "RENDERED":
         return window.scene.render.engine != "BLENDER_WORKBENCH"
@@ -39,11 +42,11 @@ def show(scene: bpy.types.Scene, lit: bool, windows: Iterable[bpy.types.Window] 
 
     :param lit: some viewport shows materials; windows: those in which a viewport may show a few objects alone.
     """
-    surfaces = cutting.surfaces_of(scene)
-    lit = lit and all(map(rays.may_hide, surfaces))
+    surfaces = surfaces_of(scene)
+    lit = lit and all(map(ray_visibility.may_hide, surfaces))
     alone = [space for window in windows if window.scene == scene for space in _viewports(window) if space.local_view]
     for obj, surface in surfaces.items():
-        (rays.hide if lit else rays.show)(obj)
+        (ray_visibility.hide if lit else ray_visibility.show)(obj)
         hidden = not lit or obj.hide_viewport
         if surface.hide_viewport != hidden:
             surface.hide_viewport = hidden
@@ -55,31 +58,33 @@ def show(scene: bpy.types.Scene, lit: bool, windows: Iterable[bpy.types.Window] 
             if surface.local_view_get(space) != obj.local_view_get(space):
                 surface.local_view_set(space, obj.local_view_get(space))
     if not lit:
-        let_go(scene)
+        unfreeze(scene)
 
 
 def is_edited(scene: bpy.types.Scene) -> bool:
-    """Whether a medium that is cut is in Edit Mode. A render would not cut it; viewports go on as they are meanwhile."""
-    return any(obj.mode == "EDIT" for obj in cutting.surfaces_of(scene))
+    """Return whether a medium that is cut is in Edit Mode. Renders do not cut it; viewports go on as they are meanwhile."""
+    return any(obj.mode == "EDIT" for obj in surfaces_of(scene))
 
 
-def hold(scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> None:
-    """Let viewports go on showing cut surfaces as they are, which move with their objects, and cut nothing anew."""
-    if cutting.is_kept(scene):
+def freeze(scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> None:
+    """Freeze the surfaces of a scene: viewports go on showing them as they are, moving with their objects, and cut nothing."""
+    if is_baked(scene):
         return
-    for surface in cutting.surfaces_of(scene).values():
+    for surface in surfaces_of(scene).values():
         evaluated = surface.evaluated_get(layer.depsgraph)
-        if surface.hide_viewport or not surface.modifiers[0].show_viewport or not evaluated.is_evaluated:
+        modifier = find_nodes_modifier(surface)
+        if surface.hide_viewport or modifier is None or not modifier.show_viewport or not evaluated.is_evaluated:
             continue
         mesh = bpy.data.meshes.new_from_object(evaluated, preserve_all_data_layers=True, depsgraph=layer.depsgraph)
-        cutting.exchange_mesh(surface, mesh)
-        surface.modifiers[0].show_viewport = False
+        exchange_mesh(surface, mesh)
+        modifier.show_viewport = False
 
 
-def let_go(scene: bpy.types.Scene) -> None:
-    """Cut for viewports again."""
-    for obj, surface in cutting.surfaces_of(scene).items():
-        if not surface.modifiers[0].show_viewport:
-            cutting.exchange_mesh(surface, bpy.data.meshes.new(surface.name))
-            cutting.liken(surface, obj)
-            surface.modifiers[0].show_viewport = True
+def unfreeze(scene: bpy.types.Scene) -> None:
+    """Let viewports show surfaces of a scene as they are cut again."""
+    for obj, surface in surfaces_of(scene).items():
+        modifier = find_nodes_modifier(surface)
+        if modifier is not None and not modifier.show_viewport:
+            exchange_mesh(surface, bpy.data.meshes.new(surface.name))
+            copy_settings(surface, obj)
+            modifier.show_viewport = True

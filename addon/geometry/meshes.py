@@ -22,8 +22,9 @@ def open_edge_count(triangles: np.ndarray) -> int:
 
 
 def same_places(vertices: np.ndarray) -> np.ndarray:
-    """Return for every vertex the first one in exactly the same place: a seam whose sides have vertices of their own, as
-    texts, caps of curves and files for printers have, is no gap.
+    """Return for every vertex the first one in exactly the same place.
+
+    A seam whose sides have vertices of their own, as texts, caps of curves and files for printers have, is so no gap.
 
     :param vertices: (n, 3) float32.
     """
@@ -54,16 +55,17 @@ def surface_area(vertices: np.ndarray, triangles: np.ndarray) -> float:
 
 
 def mean_chord(vertices: np.ndarray, triangles: np.ndarray) -> float:
-    """Return the mean length of the straight ways through a closed mesh, in units of its ``vertices``: 4 V / S, exact for
-    convex bodies in light from everywhere (Cauchy 1850, Note sur divers théorèmes relatifs à la rectification des courbes
-    et à la quadrature des surfaces); 0 for what has no surface.
+    """Return the mean length of the straight ways through a closed mesh, in units of its ``vertices``; 0 without a surface.
+
+    It is 4 V / S, exact for convex bodies in light from everywhere (Cauchy 1850, Note sur divers théorèmes relatifs à la
+    rectification des courbes et à la quadrature des surfaces).
     """
     area = surface_area(vertices, triangles)
     return 4.0 * abs(signed_volume(vertices, triangles)) / area if area > 0.0 else 0.0
 
 
 def is_closed(triangles: np.ndarray) -> bool:
-    """Tell whether every directed edge is met exactly as often as its reverse, without sorting the edges.
+    """Return whether every directed edge is met exactly as often as its reverse, without sorting the edges.
 
     With two random numbers r and s for every vertex, the sum of r[a] s[b] - s[a] r[b] over all directed edges is 0 if
     the edges cancel. If they do not, it is a polynomial of the random numbers other than 0, whose value is 0 modulo

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 
 @dataclass(frozen=True)
@@ -12,3 +13,8 @@ class Choice:
     keyword: str
     name: str
     description: str
+
+
+def keyword_of(value: Any) -> Any:
+    """Return the keyword of a choice, and any other value as it is."""
+    return value.keyword if isinstance(value, Choice) else value

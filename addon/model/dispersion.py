@@ -2,7 +2,7 @@
 
 The shader holds the same formulae (osl/dispersion.h); these serve the presets, the panels and the tests.
 
-References:
+Sources:
 
 * Sellmeier (1872), Ueber die durch die Aetherschwingungen erregten Mitschwingungen der Koerpertheilchen, Annalen der
   Physik 223.
@@ -26,7 +26,7 @@ LINE_F = 486.1327
 
 
 def sellmeier_ior(b: Sequence[float], c: Sequence[float], wavelength: float) -> float:
-    """Index of refraction by Sellmeier (1872): n^2 = 1 + sum of B L^2 / (L^2 - C), L in micrometres.
+    """Return the index of refraction by Sellmeier (1872): n^2 = 1 + sum of B L^2 / (L^2 - C), L in micrometres.
 
     :param b: three strengths.
     :param c: the squares of the three resonances, square micrometres.
@@ -43,7 +43,7 @@ def sellmeier_ior(b: Sequence[float], c: Sequence[float], wavelength: float) -> 
 
 
 def abbe_ior(ior: float, abbe: float, wavelength: float) -> float:
-    """Index of refraction by Cauchy's (1836) two terms, through the index at the d line and the Abbe number.
+    """Return the index of refraction by Cauchy's (1836) two terms, through the index at the d line and the Abbe number.
 
     :param ior: index at 587.56 nm.
     :param abbe: V_d = (n_d - 1) / (n_F - n_C); 0 or below: no dispersion.
@@ -56,24 +56,25 @@ def abbe_ior(ior: float, abbe: float, wavelength: float) -> float:
 
 
 def jf_ior(ior: float, dispersion: float, wavelength: float) -> float:
-    """Index of refraction of JF Nested Dielectric (2014): n = IOR + ((1 - t)^2 - 0.5) dispersion, t = (wavelength -
-    370 nm) / 410 nm.
+    """Return the index of refraction of JF Nested Dielectric (2014) at a wavelength in nm.
+
+    n = IOR + ((1 - t)^2 - 0.5) dispersion, t = (wavelength - 370 nm) / 410 nm.
     """
     t = (wavelength - 370.0) / 410.0
     return ior + ((1.0 - t) ** 2 - 0.5) * dispersion
 
 
-def mean_cauchy_distances(table: np.ndarray) -> np.ndarray:
-    """Mean of L^-2 - L_d^-2 over the red, green and blue of a spectral table (entries, 4), in 1/um^2.
+def mean_inverse_square_offsets(table: np.ndarray) -> np.ndarray:
+    """Return the mean of L^-2 - L_d^-2 over the red, green and blue of a spectral table (entries, 4), in 1/um^2.
 
     An index by Cauchy's two terms is linear in it.
     """
-    distances = (table[:, 3:] * 1e-3) ** -2.0 - (LINE_D * 1e-3) ** -2
-    return (table[:, :3].astype(np.float64) * distances).mean(axis=0)
+    offsets = (table[:, 3:] * 1e-3) ** -2.0 - (LINE_D * 1e-3) ** -2
+    return (table[:, :3].astype(np.float64) * offsets).mean(axis=0)
 
 
 def material_ior(values: dict, wavelength: float) -> float:
-    """Index of refraction of a material at a wavelength in nm, as the shader takes it.
+    """Return the index of refraction of a material at a wavelength in nm, as the shader takes it.
 
     ``values`` holds the material's parameters by keyword. Sellmeier's curve is shifted so that it goes through IOR at
     the d line: the published one if IOR is its own.
@@ -89,7 +90,7 @@ def material_ior(values: dict, wavelength: float) -> float:
 
 
 def abbe_number(values: dict) -> float:
-    """V_d = (n_d - 1) / (n_F - n_C) of a material's parameters; infinite where nothing disperses."""
+    """Return V_d = (n_d - 1) / (n_F - n_C) of a material's parameters; infinite where nothing disperses."""
     spread = material_ior(values, LINE_F) - material_ior(values, LINE_C)
     return (material_ior(values, LINE_D) - 1.0) / spread if spread else float("inf")
 
@@ -99,8 +100,9 @@ VISIBLE = (380, 780)
 
 
 def abbe_deviation(values: dict) -> float:
-    """By how much the index of Cauchy's two terms, through a material's own at the d line and with its Abbe number, is off the
-    material's own index at most over visible light. NaN where it has none.
+    """Return how far Cauchy's two terms are at most off a material's own index over visible light.
+
+    They go through its index at the d line and have its Abbe number. NaN where the material has no index.
     """
     ior, abbe = material_ior(values, LINE_D), abbe_number(values)
     if abbe == inf:

@@ -32,8 +32,9 @@ class WriteError(RuntimeError):
 
 @contextmanager
 def replacing(path: Path | str) -> Iterator[Path]:
-    """Yield a path in the same folder and with the same ending, in lower case; what the block writes to it takes the
-    file's place at the end.
+    """Yield a path for a block to write to; what it writes takes the file's place at the end.
+
+    The path is in the same folder and has the same ending, in lower case.
 
     Whatever the block raises leaves the old file as it was, and nothing else behind; missing folders are made. A path
     is the operating system's: braces, ``#`` and ``//``, which Blender reads in its own way, stand for themselves.

@@ -11,7 +11,8 @@ from typing import Any
 
 from .files import replacing
 from .folders import ROOT
-from .parameters import BY_KEYWORD, ParameterError, check_keywords
+from .parameter import ParameterError
+from .parameters import BY_KEYWORD, check_keywords
 
 PRESET_FOLDER = ROOT / "presets"
 
@@ -77,16 +78,18 @@ def preset_names(folder: Path = PRESET_FOLDER) -> tuple[str, ...]:
 
 
 def all_presets(folder: Path = PRESET_FOLDER) -> tuple[Preset, ...]:
-    """Return all presets, by group in the order of :data:`GROUPS` and by name within a group. Raises as
-    :func:`load_preset` does.
+    """Return all presets, by group in the order of :data:`GROUPS` and by name within a group.
+
+    :raises ParameterError: as :func:`load_preset` does.
     """
     presets = [load_preset(key, folder) for key in preset_names(folder)]
     return tuple(sorted(presets, key=lambda preset: (GROUPS.index(preset.group), preset.name)))
 
 
 def load_preset(key: str, folder: Path = PRESET_FOLDER) -> Preset:
-    """Read one preset and check its values. Raises :class:`ParameterError` naming the preset that is unknown or
-    wrong.
+    """Read one preset and check its values.
+
+    :raises ParameterError: names the preset that is unknown or wrong.
     """
     path = folder / f"{key}.toml"
     if key != path.stem or not path.is_file():
@@ -135,7 +138,7 @@ def preset_text(preset: Preset) -> str:
 
 
 def _toml(value: Any) -> str:
-    """A value as TOML has it, which takes what JSON makes of texts and bare numbers."""
+    """Return a value as TOML has it, which takes what JSON makes of texts and bare numbers."""
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(_toml, value))}]"
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
@@ -144,7 +147,7 @@ def _toml(value: Any) -> str:
 def key_of(name: str) -> str:
     """Return the key of a preset of that name: a file's name on every system, which leads into no other folder.
 
-    Raises :class:`ParameterError` for a name without letters and digits.
+    :raises ParameterError: for a name without letters and digits.
     """
     key = re.sub(r"\W+", "_", name.casefold())[:LONGEST_KEY].strip("_")
     if not key:
@@ -153,5 +156,8 @@ def key_of(name: str) -> str:
 
 
 def renamed(preset: Preset, name: str) -> Preset:
-    """Return a preset under another name. Raises :class:`ParameterError` for one that cannot name a preset."""
+    """Return a preset under another name.
+
+    :raises ParameterError: for one that cannot name a preset.
+    """
     return replace(preset, key=key_of(name), name=name.strip())

@@ -6,12 +6,12 @@ import re
 from pathlib import Path
 
 from .folders import ROOT
-from .parameters import osl_limits
+from .osl_contract import osl_contract
 
 OSL_FOLDER = ROOT / "osl"
 
-_LIMITS_FILE = "parameters.h"
-"""A header that is made of the table of parameters."""
+_CONTRACT_FILE = "contract.h"
+"""A header that is made of what Python knows."""
 
 _INCLUDE = re.compile(r'^#include "(.+)"\n', re.MULTILINE)
 
@@ -27,8 +27,8 @@ def inlined_source(name: str, folder: Path = OSL_FOLDER) -> str:
         if filename in seen:
             return ""
         seen.add(filename)
-        if filename == _LIMITS_FILE:
-            return osl_limits()
+        if filename == _CONTRACT_FILE:
+            return osl_contract()
         text = (folder / filename).read_text(encoding="utf-8").replace("#pragma once\n", "")
         return _INCLUDE.sub(lambda match: inline(match.group(1)), text)
 

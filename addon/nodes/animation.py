@@ -24,12 +24,12 @@ def curves(animation: bpy.types.AnimData | None) -> Iterator[bpy.types.FCurve]:
 
 
 def is_animated(owner: bpy.types.ID, struct: bpy.types.bpy_struct) -> bool:
-    """Tell whether a keyframe or a driver of a data-block moves a property of something in it, as a socket's value."""
+    """Return whether a keyframe or a driver of a data-block moves a property of something in it, as a socket's value."""
     return any(_holder(owner, curve.data_path) == struct for curve in curves(owner.animation_data))
 
 
 def _holder(owner: bpy.types.ID, path: str) -> bpy.types.bpy_struct | None:
-    """What holds the property at the end of a path; None where the path leads nowhere."""
+    """Return the struct whose property is at the end of a path; None where the path leads nowhere."""
     try:
         return owner.path_resolve(path.rpartition(".")[0])
     except ValueError:

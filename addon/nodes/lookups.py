@@ -10,13 +10,14 @@ from typing import Any
 import bpy
 
 _looked_up: dict[tuple, Any] | None = None
-"""What functions of :func:`looked_up_once` returned in the outermost block of :func:`unchanged_nodes`."""
+"""What functions of :func:`cached_by_nodes` returned in the outermost block of :func:`caching_nodes`."""
 
 
 @contextmanager
-def unchanged_nodes() -> Iterator[None]:
-    """Let the nodes of each material and group be looked through once, however many objects it has: within the block, none of
-    those that are asked about may come, go or be plugged in otherwise.
+def caching_nodes() -> Iterator[None]:
+    """Let the nodes of each material and group be looked through once, however many objects it has.
+
+    Within the block, none of the nodes that are asked about may come, go or be plugged in otherwise.
     """
     global _looked_up
     outer = _looked_up
@@ -28,8 +29,8 @@ def unchanged_nodes() -> Iterator[None]:
         _looked_up = outer
 
 
-def looked_up_once(function: Callable) -> Callable:
-    """Make a function of a material or a group remember what it returns in a block of :func:`unchanged_nodes`."""
+def cached_by_nodes(function: Callable) -> Callable:
+    """Make a function of a material or a group remember what it returns in a block of :func:`caching_nodes`."""
 
     @wraps(function)
     def remembering(data: bpy.types.ID | None) -> Any:

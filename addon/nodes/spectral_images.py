@@ -30,7 +30,7 @@ def read_rows(image: bpy.types.Image | None) -> np.ndarray | None:
 
 
 def holds(image: bpy.types.Image | None, row: int, table: np.ndarray) -> bool:
-    """Tell whether a row of an image is that table, and is read as it is."""
+    """Return whether a row of an image is that table, and is read as it is."""
     rows = read_rows(image)
     if rows is None or not 0 <= row < len(rows) or not np.array_equal(rows[row], table.astype(np.float32)):
         return False

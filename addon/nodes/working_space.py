@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import bpy
 
-from ..model.spectra import SpectrumError
+from ..model.colour_science import SpectrumError
 
 _GAMUTS = {"Linear Rec.709": "REC709", "Linear Rec.2020": "REC2020", "ACEScg": "ACESCG"}
 
 
 def working_gamut() -> str:
-    """Return the word of :data:`~nested_dielectric.spectra.GAMUTS` for the open file's working space.
+    """Return the word of :data:`~nested_dielectric.model.gamuts.GAMUTS` for the open file's working space.
 
     :raises SpectrumError: for a working space of a custom OpenColorIO configuration.
     """

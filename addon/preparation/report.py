@@ -13,10 +13,10 @@ import bpy
 
 from ..analysis.changes import REPORT_PROPERTY
 from ..scene.settings import AT_LEAST, LABELS, Changed
-from .checks import Problem
+from .problem import Problem
 
 MOST_CHARACTERS = 4000
-"""Of problems, and of changes, that are kept."""
+"""The most characters of problems, and of changes, that are kept."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def keep_report(
 
 
 def _first(items: Sequence) -> list:
-    """As many as may be kept."""
+    """Return as many of the first items as may be kept."""
     room = MOST_CHARACTERS
     kept = []
     for item in items:
@@ -86,5 +86,5 @@ def last_report(scene: bpy.types.Scene) -> Report | None:
 
 
 def forget_report(scene: bpy.types.Scene) -> None:
-    """Keep nothing any more."""
+    """Remove what is kept with a scene."""
     scene.pop(REPORT_PROPERTY, None)

@@ -1,4 +1,4 @@
-"""Cycles' shadow caustics for media: one switch for the flags of media, of what they cast light on, and of lamps."""
+"""Cycles' shadow caustics for media: one switch for the flags of media, of what they cast light on, and of lights."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import bpy
 
 from ..model.parameters import BY_KEYWORD
-from .lights import LOBE, lamps, light_carriers
+from .lights import LOBE, light_carriers, scene_lights
 from .materials import dielectric_node, dielectrics, get_parameter
 from .media import SOLID_TYPES, media
 
@@ -17,9 +17,10 @@ _SURFACES = SOLID_TYPES | {"CURVES", "POINTCLOUD"}
 def set_shadow_caustics(scene: bpy.types.Scene, enabled: bool = True) -> tuple[str, ...]:
     """Switch Cycles' shadow caustics on or off for the media of a scene.
 
-    Media cast them, all other objects that render show them, and lamps make them; what belongs to a library stays as it
-    is. Returns what was changed, and, when they are switched on, what about the media does not go with them, in
-    sentences. A second call changes nothing.
+    Media cast them, all other objects that render show them, and lights make them. What belongs to a library stays as it
+    is. A second call changes nothing.
+
+    :return: sentences: what was changed and, when they are switched on, what about the media does not go with them.
     """
     changes = []
     for owner, flag, label in _flags(scene):
@@ -32,20 +33,20 @@ def set_shadow_caustics(scene: bpy.types.Scene, enabled: bool = True) -> tuple[s
 
 
 def _flags(scene: bpy.types.Scene) -> Iterator[tuple[bpy.types.Object | bpy.types.Light, str, str]]:
-    """What has a flag of shadow caustics, which one, and Blender's name for it."""
+    """Yield what has a flag of shadow caustics, which one, and Blender's name for it."""
     casters = media(scene)
     for obj in casters:
         yield obj, "is_caustics_caster", "Cast Shadow Caustics"
     for obj in scene.objects:
         if obj.type in _SURFACES and not obj.hide_render and obj not in casters:
             yield obj, "is_caustics_receiver", "Receive Shadow Caustics"
-    for light in dict.fromkeys(lamp.data for lamp in lamps(scene)):
-        yield light, "is_caustics_light", "Shadow Caustics"
+    for data in dict.fromkeys(light.data for light in scene_lights(scene)):
+        yield data, "is_caustics_light", "Shadow Caustics"
 
 
 def _drawbacks(scene: bpy.types.Scene) -> list[str]:
     texts = []
-    lobes = any(carrier.refraction == LOBE for carrier in light_carriers(scene))
+    lobes = any(transport.refraction == LOBE for transport in light_carriers(scene))
     found = dict.fromkeys(material for obj in media(scene) for _, material in dielectrics(obj))
     for material in found:
         node = dielectric_node(material)
@@ -58,7 +59,7 @@ def _drawbacks(scene: bpy.types.Scene) -> list[str]:
             )
         if lobes and get_parameter(node, BY_KEYWORD["caustic_direct_refraction"]):
             texts.append(
-                f"{material.name!r} also casts light of lamps by its lobe, which counts it twice; "
+                f"{material.name!r} also casts light by its lobe, which counts it twice; "
                 "switch Caustic Direct Refraction off"
             )
     return texts

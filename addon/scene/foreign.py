@@ -1,11 +1,11 @@
-"""Objects that are no media, and lamps: what rays make of them inside a medium."""
+"""Objects that are no media, and lights: what rays make of them inside a medium."""
 
 from __future__ import annotations
 
 import bpy
 import numpy as np
 
-from .rays import is_seen_by_all
+from .ray_visibility import is_seen_by_all
 
 _OPAQUE = {
     "ShaderNodeBsdfDiffuse",
@@ -24,8 +24,9 @@ _OPAQUE = {
 
 
 def sends_light_on(obj: bpy.types.Object) -> bool:
-    """Whether light may start at an object that is no medium, go through it or be scattered in it, rather than end at its
-    surface.
+    """Return whether an object that is no medium sends light on, rather than that all light ends at its surface.
+
+    Light may start there, go through it or be scattered in it.
     """
     return (
         obj.type in ("CURVES", "POINTCLOUD", "VOLUME")
@@ -36,7 +37,7 @@ def sends_light_on(obj: bpy.types.Object) -> bool:
 
 
 def is_clear(material: bpy.types.Material | None) -> bool:
-    """Whether rays may go on behind a surface of a material."""
+    """Return whether rays may go on behind a surface of a material."""
     if material is None or material.node_tree is None:
         return False
     output = material.node_tree.get_output_node("CYCLES")
@@ -50,7 +51,7 @@ def is_clear(material: bpy.types.Material | None) -> bool:
 
 
 def _shines(material: bpy.types.Material | None) -> bool:
-    """Whether light may start at a surface of a material."""
+    """Return whether light may start at a surface of a material."""
     nodes = [] if material is None or material.node_tree is None else _nodes(material.node_tree)
     strengths = (node.inputs.get("Emission Strength") for node in nodes)
     return any(node.bl_idname in ("ShaderNodeEmission", "ShaderNodeBackground") for node in nodes) or any(
@@ -59,7 +60,11 @@ def _shines(material: bpy.types.Material | None) -> bool:
 
 
 def _nodes(tree: bpy.types.NodeTree) -> list[bpy.types.Node]:
-    """All nodes of a tree, those in groups too."""
+    """Return all nodes of a tree, those in groups too.
+
+    Unlike :func:`~nested_dielectric.nodes.mesh_reads.own_nodes` it looks into the extension's groups: one of a version that is
+    not known here makes no medium, but lets light through.
+    """
     groups = {node.node_tree for node in tree.nodes if node.type == "GROUP" and node.node_tree is not None}
     return list(tree.nodes) + [node for group in groups for node in _nodes(group)]
 
@@ -74,11 +79,11 @@ def _is_clear_node(node: bpy.types.Node) -> bool:
     return makes_shader and node.type not in ("GROUP", "GROUP_INPUT", "REROUTE") and node.bl_idname not in _OPAQUE
 
 
-def lamp_box(lamp: bpy.types.Object) -> np.ndarray:
-    """Return the (2, 3) lowest and highest corner of where a lamp is; nowhere for a sun, which is outside of all."""
-    light = lamp.data
-    if light.type == "SUN":
+def light_box(light: bpy.types.Object) -> np.ndarray:
+    """Return the (2, 3) lowest and highest corner of where a light is; nowhere for a sun, which is outside of all."""
+    data = light.data
+    if data.type == "SUN":
         return np.array([(np.inf,) * 3, (-np.inf,) * 3])
-    size = max(light.size, light.size_y) / 2 if light.type == "AREA" else light.shadow_soft_size
-    reach = 2.0**0.5 * size * max(map(abs, lamp.matrix_world.to_scale()))
-    return np.array(lamp.matrix_world.translation) + np.array([[-reach], [reach]])
+    size = max(data.size, data.size_y) / 2 if data.type == "AREA" else data.shadow_soft_size
+    reach = 2.0**0.5 * size * max(map(abs, light.matrix_world.to_scale()))
+    return np.array(light.matrix_world.translation) + np.array([[-reach], [reach]])

@@ -1,11 +1,11 @@
-"""Lamps that the lobes of direct refraction and direct reflection carry.
+"""Lights that the lobes of direct refraction and direct reflection carry.
 
-Cycles' rays carry a lamp unless its Ray Visibility leaves them out: Transmission for refraction, Glossy for reflection.
-What rays leave out the lobes carry, so no lamp is ever counted twice.
+Cycles' rays carry a light unless its Ray Visibility leaves them out: Transmission for refraction, Glossy for reflection.
+What rays leave out the lobes carry, so no light is ever counted twice.
 
-The group `Nested Dielectric Lights` holds one Script node a lamp, whose inputs are driven by the lamp itself. So an
-animated lamp, or one that a parent moves, is right on every frame, also where the extension is not installed. A file has one
-group for all of its prepared scenes; each lamp counts in its own scene alone, and in none that its material is taken to.
+The group `Nested Dielectric Lights` holds one Script node a light, whose inputs are driven by the light itself. So an
+animated light, or one that a parent moves, is right on every frame, also where the extension is not installed. A file has one
+group for all of its prepared scenes; each light counts in its own scene alone, and in none that its material is taken to.
 """
 
 from __future__ import annotations
@@ -16,29 +16,21 @@ import bpy
 
 from ..model.shader_source import inlined_source
 from ..nodes.identity import NO_SCENE, SCENE_PROPERTY, known_number, scene_number
-from ..nodes.node_group import (
-    EMITTER_OUTPUT,
-    LAMP_OUTPUTS,
-    LAMPS_OUTPUT,
-    LIGHT_FILE,
-    LIGHTS_VERSION_PROPERTY,
-    MATERIAL_VERSION,
-    add_script,
-    ensure_lights,
-    find_lights,
-    make_script,
-)
+from ..nodes.lights_group import EMITTER_OUTPUT, LIGHT_COUNT_OUTPUT, LIGHT_OUTPUTS, ensure_lights, find_lights
+from ..nodes.material_version import MATERIAL_VERSION
+from ..nodes.names import LIGHTS_VERSION_PROPERTY
+from ..nodes.osl import LIGHT_FILE, add_script, make_script
 from ..nodes.shader_nodes import math_node, view_layer_attribute
 
 RAYS, LOBE, NOTHING = "RAYS", "LOBE", "NOTHING"
 
 WEAK = 1e-6
-"""As in osl/nested_dielectric.osl: so little that Cycles does not take media for lamps, and draws no light samples of
+"""As in osl/nested_dielectric.osl: so little that Cycles does not take media for lights, and draws no light samples of
 them.
 """
 
 _TYPES = ("POINT", "SUN", "SPOT", "AREA", "ELLIPSE")
-"""As numbered in osl/lamp.h."""
+"""As numbered in osl/light.h."""
 
 _SIZES = {
     "POINT": {"Size": "data.shadow_soft_size"},
@@ -64,144 +56,166 @@ _SOCKETS = (
     dict.fromkeys(("Index", "Here", "Type"), "INT")
     | dict.fromkeys((*_TRANSFORMS, *_COLORS), "VECTOR")
     | dict.fromkeys((*_VALUES, "Size", "SizeY", "SpotSize", "SpotBlend", "Spread"), "FLOAT")
-    | {f"Other{name}": kind for name, kind in LAMP_OUTPUTS.items()}
+    | {f"Previous{name}": kind for name, kind in LIGHT_OUTPUTS.items()}
 )
 
 
 @dataclass(frozen=True)
-class Carrier:
-    """What brings the light of a lamp through media (``refraction``) and off them (``reflection``): ``RAYS``, the
-    ``LOBE``, or ``NOTHING``, with the reason.
+class LightTransport:
+    """What carries a light through media and off them.
+
+    :param light: the light's name.
+    :param refraction: what carries it through media: ``RAYS``, ``LOBE`` or ``NOTHING``.
+    :param reflection: what carries it off them, likewise.
+    :param reason: why nothing does.
     """
 
-    lamp: str
+    light: str
     refraction: str
     reflection: str
     reason: str = ""
 
+    @property
+    def lamp(self) -> str:
+        """Return the light's name, for scripts that use the word of versions up to 0.2."""
+        return self.light
 
-def light_carriers(scene: bpy.types.Scene) -> tuple[Carrier, ...]:
-    """Tell for each lamp of a scene whether rays or the lobes carry its light."""
-    carriers = []
-    for lamp in lamps(scene):
-        reason = unsuitable(lamp)
+
+def light_carriers(scene: bpy.types.Scene) -> tuple[LightTransport, ...]:
+    """Tell for each light of a scene whether rays or the lobes carry it."""
+    transports = []
+    for light in scene_lights(scene):
+        reason = why_not_lobe(light)
         left_out = NOTHING if reason else LOBE
-        ways = [RAYS if seen else left_out for seen in (lamp.visible_transmission, lamp.visible_glossy)]
-        carriers.append(Carrier(lamp.name, *ways, reason if NOTHING in ways else ""))
-    return tuple(carriers)
+        ways = [RAYS if seen else left_out for seen in (light.visible_transmission, light.visible_glossy)]
+        transports.append(LightTransport(light.name, *ways, reason if NOTHING in ways else ""))
+    return tuple(transports)
 
 
-def lamps(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """Return the lamps of a scene by name."""
+def scene_lights(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """Return the lights of a scene by name."""
     return sorted((obj for obj in scene.objects if obj.type == "LIGHT"), key=lambda obj: obj.name)
 
 
-def unsuitable(lamp: bpy.types.Object) -> str:
-    """Say why the lobes cannot carry a lamp, or nothing."""
-    light = lamp.data
-    if not light.normalize:
+def why_not_lobe(light: bpy.types.Object) -> str:
+    """Say why the lobes cannot carry a light, or nothing."""
+    tree = light.data.node_tree
+    if not light.data.normalize:
         return "its strength is not normalized"
-    if light.node_tree is not None and any(
-        node.bl_idname not in ("ShaderNodeEmission", "ShaderNodeOutputLight") for node in light.node_tree.nodes
+    if tree is not None and any(
+        node.bl_idname not in ("ShaderNodeEmission", "ShaderNodeOutputLight") for node in tree.nodes
     ):
         return "its colour or strength comes from nodes"
     return ""
 
 
-def carried_lamps(scene: bpy.types.Scene) -> list[bpy.types.Object]:
-    """Return the lamps that the lobes carry, now or on some frame."""
+def lobe_lights(scene: bpy.types.Scene) -> list[bpy.types.Object]:
+    """Return the lights that the lobes carry, now or on some frame."""
     return [
-        lamp
-        for lamp in lamps(scene)
-        if not unsuitable(lamp)
-        and (not lamp.visible_transmission or not lamp.visible_glossy or _visibility_moves(lamp))
+        light
+        for light in scene_lights(scene)
+        if not why_not_lobe(light)
+        and (not light.visible_transmission or not light.visible_glossy or _visibility_moves(light))
     ]
 
 
-def listed_lamps(scene: bpy.types.Scene) -> list[bpy.types.Object | None]:
-    """Return the lamps that the file's group holds for a scene, in order; None for one that is no longer in the file."""
-    return [lamp for number, lamp in _listed() if number == known_number(scene)]
+def listed_lights(scene: bpy.types.Scene) -> list[bpy.types.Object | None]:
+    """Return the lights that the file's group holds for a scene, in order; None for one that is no longer in the file."""
+    return [light for number, light in _listed() if number == known_number(scene)]
 
 
 def update_lights(scene: bpy.types.Scene) -> bool:
-    """Make the group hold the lamps that the lobes carry in a scene, and in those that were prepared before; tell whether it
-    changed.
+    """Make the group hold the lights that the lobes carry in a scene, and tell whether it changed.
+
+    The lights of scenes that were prepared before stay in it.
     """
     scene_number(scene)
-    return _list_lamps()
+    return _list_lights()
 
 
 def refresh_lights() -> bool:
-    """Make the group hold the lamps that it is to hold in the way of this version; tell whether it changed."""
+    """Make the group hold the lights that it is to hold in the way of this version; tell whether it changed."""
     tree = find_lights()
     if tree is None:
         return False
-    listed = {_driving_lamp(tree, node) for node in tree.nodes if node.type == "SCRIPT" and "Energy" in node.inputs}
+    listed = {_driving_light(tree, node) for node in tree.nodes if node.type == "SCRIPT" and "Energy" in node.inputs}
     for scene in bpy.data.scenes:
-        if not listed.isdisjoint(lamps(scene)):  # a list of before scenes had numbers
+        if not listed.isdisjoint(scene_lights(scene)):  # a list of before scenes had numbers
             scene_number(scene)
-    return _list_lamps()
+    return _list_lights()
 
 
 def _listed() -> list[tuple[int, bpy.types.Object | None]]:
-    """Numbers of scenes and their lamps that the file's group holds, in order."""
+    """Return the lights that the file's group holds, each with the number of its scene, in order."""
     tree = find_lights()
-    return [] if tree is None else [(_number(node), _driving_lamp(tree, node)) for node in _script_nodes(tree)]
+    return [] if tree is None else [(_number(node), _driving_light(tree, node)) for node in _script_nodes(tree)]
 
 
-def _list_lamps() -> bool:
+def _list_lights() -> bool:
+    """Make the group hold the lights that the lobes carry in all prepared scenes, and tell whether it changed."""
     wanted = [
-        (known_number(scene), lamp)
+        (known_number(scene), light)
         for scene in bpy.data.scenes
         if known_number(scene) != NO_SCENE
-        for lamp in carried_lamps(scene)
+        for light in lobe_lights(scene)
     ]
     tree = ensure_lights()
-    if (
-        tree.get(LIGHTS_VERSION_PROPERTY) == MATERIAL_VERSION
-        and _listed() == wanted
-        and len(tree.animation_data.drivers if tree.animation_data else ())
-        == sum(_driver_count(lamp) for _, lamp in wanted)
-        and all(
-            node.inputs["Type"].default_value == _type(lamp.data)
-            for (_, lamp), node in zip(wanted, _script_nodes(tree))
-        )
-    ):
+    if _holds(tree, wanted):
         return False
     tree[LIGHTS_VERSION_PROPERTY] = MATERIAL_VERSION
     tree.animation_data_clear()
     tree.nodes.clear()
     outputs = tree.nodes.new("NodeGroupOutput")
-    if not wanted:
-        return True
+    if wanted:
+        _add_scripts(tree, wanted, outputs)
+        emission = tree.nodes.new("ShaderNodeEmission")
+        emission.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+        emission.inputs["Strength"].default_value = WEAK
+        tree.links.new(emission.outputs[0], outputs.inputs[EMITTER_OUTPUT])
+        emission.location = (260.0 * (len(wanted) - 1), 300.0)
+        outputs.location = (260.0 * len(wanted), 0.0)
+    return True
+
+
+def _holds(tree: bpy.types.NodeTree, wanted: list[tuple[int, bpy.types.Object]]) -> bool:
+    """Return whether the group holds lights in the way of this version, each with the number of its scene."""
+    drivers = tree.animation_data.drivers if tree.animation_data else ()
+    return (
+        tree.get(LIGHTS_VERSION_PROPERTY) == MATERIAL_VERSION
+        and _listed() == wanted
+        and len(drivers) == sum(_driver_count(light) for _, light in wanted)
+        and all(
+            node.inputs["Type"].default_value == _type(light.data)
+            for (_, light), node in zip(wanted, _script_nodes(tree))
+        )
+    )
+
+
+def _add_scripts(
+    tree: bpy.types.NodeTree, wanted: list[tuple[int, bpy.types.Object]], outputs: bpy.types.NodeGroupOutput
+) -> None:
+    """Add a Script node for each light, which passes on what the nodes before it have drawn, and plug the last one in."""
     script = make_script(LIGHT_FILE, inlined_source(LIGHT_FILE))
     rendered = view_layer_attribute(tree, f'["{SCENE_PROPERTY}"]').outputs["Fac"]
     previous, count = None, None
-    for index, (number, lamp) in enumerate(wanted):
-        node = add_script(tree, lamp.name, script, _SOCKETS, LAMP_OUTPUTS)
+    for index, (number, light) in enumerate(wanted):
+        node = add_script(tree, light.name, script, _SOCKETS, LIGHT_OUTPUTS)
         node.location = (260.0 * index, 0.0)
-        _set_lamp(node, index, lamp)
+        _set_light(node, index, light)
         here = math_node(tree, "COMPARE", rendered, float(number), 0.5)
         tree.links.new(here, node.inputs["Here"])
         count = here if count is None else math_node(tree, "ADD", count, here)
         if previous is not None:
-            for name in LAMP_OUTPUTS:
-                tree.links.new(previous.outputs[name], node.inputs[f"Other{name}"])
+            for name in LIGHT_OUTPUTS:
+                tree.links.new(previous.outputs[name], node.inputs[f"Previous{name}"])
         previous = node
-    tree.links.new(count, outputs.inputs[LAMPS_OUTPUT])
-    for name in LAMP_OUTPUTS:
+    tree.links.new(count, outputs.inputs[LIGHT_COUNT_OUTPUT])
+    for name in LIGHT_OUTPUTS:
         tree.links.new(previous.outputs[name], outputs.inputs[name])
-    emission = tree.nodes.new("ShaderNodeEmission")
-    emission.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
-    emission.inputs["Strength"].default_value = WEAK
-    tree.links.new(emission.outputs[0], outputs.inputs[EMITTER_OUTPUT])
-    emission.location = (260.0 * (len(wanted) - 1), 300.0)
-    outputs.location = (260.0 * len(wanted), 0.0)
-    return True
 
 
 def _number(node: bpy.types.ShaderNodeScript) -> int:
-    """Of the scene in which a lamp counts."""
+    """Return the number of the scene in which the light of a node counts."""
     links = node.inputs["Here"].links if "Here" in node.inputs else ()
     return int(links[0].from_node.inputs[1].default_value) if links else NO_SCENE
 
@@ -211,64 +225,63 @@ def _script_nodes(tree: bpy.types.NodeTree) -> list[bpy.types.ShaderNodeScript]:
     return sorted(nodes, key=lambda node: node.inputs["Index"].default_value)
 
 
-def _type(light: bpy.types.Light) -> int:
-    return _TYPES.index("ELLIPSE" if light.type == "AREA" and light.shape in ("DISK", "ELLIPSE") else light.type)
+def _type(data: bpy.types.Light) -> int:
+    return _TYPES.index("ELLIPSE" if data.type == "AREA" and data.shape in ("DISK", "ELLIPSE") else data.type)
 
 
-def _visibility_moves(lamp: bpy.types.Object) -> bool:
-    animation = lamp.animation_data
+def _visibility_moves(light: bpy.types.Object) -> bool:
+    animation = light.animation_data
     if animation is None:
         return False
     return animation.action is not None or any(curve.data_path.startswith("visible_") for curve in animation.drivers)
 
 
-def _driving_lamp(tree: bpy.types.NodeTree, node: bpy.types.ShaderNodeScript) -> bpy.types.Object | None:
+def _driving_light(tree: bpy.types.NodeTree, node: bpy.types.ShaderNodeScript) -> bpy.types.Object | None:
     path = node.inputs["Energy"].path_from_id("default_value")
     curve = tree.animation_data.drivers.find(path) if tree.animation_data else None
     targets = [target for variable in (curve.driver.variables if curve else ()) for target in variable.targets]
     return targets[0].id if targets else None
 
 
-def _driver_count(lamp: bpy.types.Object) -> int:
-    """How many drivers keep a lamp's node up to date."""
-    return len(_values(lamp.data)) + 3 * (len(_COLORS) + len(_TRANSFORMS))
+def _driver_count(light: bpy.types.Object) -> int:
+    """Return how many drivers keep a light's node up to date."""
+    return len(_values(light.data)) + 3 * (len(_COLORS) + len(_TRANSFORMS))
 
 
-def _values(light: bpy.types.Light) -> dict[str, str]:
-    """Sockets of a lamp's node that hold one number, and the paths from the lamp that they follow."""
-    sizes = dict(_SIZES[light.type])
-    if light.type == "AREA" and light.shape in ("SQUARE", "DISK"):
+def _values(data: bpy.types.Light) -> dict[str, str]:
+    """Return the sockets of a light's node that hold one number, and the paths from the light that they follow."""
+    sizes = dict(_SIZES[data.type])
+    if data.type == "AREA" and data.shape in ("SQUARE", "DISK"):
         sizes["SizeY"] = sizes["Size"]
     return _VALUES | sizes
 
 
-def _set_lamp(node: bpy.types.ShaderNodeScript, index: int, lamp: bpy.types.Object) -> None:
-    light = lamp.data
+def _set_light(node: bpy.types.ShaderNodeScript, index: int, light: bpy.types.Object) -> None:
     node.inputs["Index"].default_value = index
-    node.inputs["Type"].default_value = _type(light)
-    for name, path in _values(light).items():
-        _drive(node.inputs[name], -1, lamp, path)
+    node.inputs["Type"].default_value = _type(light.data)
+    for name, path in _values(light.data).items():
+        _drive(node.inputs[name], -1, light, path)
     for name, path in _COLORS.items():
         for channel in range(3):
-            _drive(node.inputs[name], channel, lamp, f"{path}[{channel}]")
+            _drive(node.inputs[name], channel, light, f"{path}[{channel}]")
     for name, channel in _TRANSFORMS.items():
         for place, axis in enumerate("XYZ"):
-            target = _drive(node.inputs[name], place, lamp, None)
+            target = _drive(node.inputs[name], place, light, None)
             target.transform_type = channel.format(axis)
             target.transform_space = "WORLD_SPACE"
             target.rotation_mode = "XYZ"
 
 
 def _drive(
-    socket: bpy.types.NodeSocket, component: int, lamp: bpy.types.Object, path: str | None
+    socket: bpy.types.NodeSocket, component: int, light: bpy.types.Object, path: str | None
 ) -> bpy.types.DriverTarget:
-    """Let a socket follow a property of a lamp, or with no path its place in the world, without Python."""
+    """Let a socket follow a property of a light, or with no path its place in the world, without Python."""
     driver = socket.driver_add("default_value", component).driver
     driver.type = "SUM"
     variable = driver.variables.new()
     variable.type = "SINGLE_PROP" if path else "TRANSFORMS"
     target = variable.targets[0]
-    target.id = lamp
+    target.id = light
     if path:
         target.data_path = path
     return target

@@ -11,9 +11,10 @@ from typing import Any
 
 import bpy
 
-from ..model.parameters import BY_KEYWORD, GROUP_NAME, MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
-from ..nodes.lookups import looked_up_once, unchanged_nodes
-from ..nodes.trees import mend_nodes
+from ..model.parameter import GROUP_NAME, MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
+from ..model.parameters import BY_KEYWORD
+from ..nodes.lookups import cached_by_nodes, caching_nodes
+from ..nodes.mending import repair_nodes
 from .materials import dielectric_node, dielectrics, may_disperse, medium_material
 from .preset_materials import preset_material
 
@@ -69,7 +70,7 @@ def assign(
     if isinstance(material, str):
         material = preset_material(material, [obj])
     else:
-        mend_nodes(material)
+        repair_nodes(material)
         if dielectric_node(material) is None:
             raise ParameterError(
                 f"material {material.name!r} has no node {GROUP_NAME!r} that reaches its output; "
@@ -85,7 +86,10 @@ def assign(
 
 
 def check_priority(priority: int) -> int:
-    """Return ``priority`` as a whole number from 0 to 1000; :class:`ParameterError` if it is none."""
+    """Return ``priority`` as a whole number from 0 to 1000.
+
+    :raises ParameterError: if it is none.
+    """
     return BY_KEYWORD["priority"].check(priority)
 
 
@@ -117,7 +121,10 @@ def own_priority(obj: bpy.types.Object) -> int | None:
 
 
 def _priority_in(value: Any) -> int | None:
-    """As is_priority() in osl/medium.h: Cycles gives the shader four numbers in single precision."""
+    """Return the priority in a custom property's value, or None, as is_priority() in osl/medium.h does.
+
+    Cycles gives the shader four numbers in single precision.
+    """
     if isinstance(value, (int, float)):
         numbers = (value, value, value, 1.0)
     elif getattr(value, "typecode", None) in ("i", "f", "d") and len(value) <= 4:
@@ -130,7 +137,10 @@ def _priority_in(value: Any) -> int | None:
 
 
 def get_priority(obj: bpy.types.Object) -> int:
-    """Return the priority an object renders with. Raises :class:`ParameterError` if it is no medium."""
+    """Return the priority that an object renders with.
+
+    :raises ParameterError: if it is no medium.
+    """
     material = medium_material(obj)
     if material is None:
         raise ParameterError(f"{obj.name!r} has no nested dielectric material; give it one with assign()")
@@ -138,19 +148,19 @@ def get_priority(obj: bpy.types.Object) -> int:
     return material_priority(material) if own is None else own
 
 
-@looked_up_once
+@cached_by_nodes
 def material_priority(material: bpy.types.Material) -> int:
     """Return the priority that a nested dielectric gives objects without their own."""
     return BY_KEYWORD["priority"].bounded(dielectric_node(material).inputs["Priority"].default_value)
 
 
 def is_cut_surface(obj: bpy.types.Object) -> bool:
-    """Tell whether an object only shows another's surface in renders."""
+    """Return whether an object only shows another's surface in renders."""
     return CUT_OF in obj
 
 
 def is_rendered(obj: bpy.types.Object) -> bool:
-    """Tell whether an artist lets renders show an object."""
+    """Return whether an artist lets renders show an object."""
     return not obj.hide_render or HIDDEN_BY_CUT in obj
 
 
@@ -173,20 +183,20 @@ def all_objects(scene: bpy.types.Scene) -> set[bpy.types.Object]:
     return objects
 
 
-@unchanged_nodes()
+@caching_nodes()
 def media(scene: bpy.types.Scene) -> list[bpy.types.Object]:
     """Return every object of a scene that is a medium, those in instanced collections too, in winning order."""
     return winning_order(all_objects(scene))
 
 
-@unchanged_nodes()
+@caching_nodes()
 def dispersing_materials(scene: bpy.types.Scene) -> list[bpy.types.Material]:
     """Return the nested dielectrics of a scene that split light into colours, or are animated to."""
     found = {material for obj in media(scene) for _, material in dielectrics(obj)}
     return sorted(filter(may_disperse, found), key=lambda material: material.name_full)
 
 
-@unchanged_nodes()
+@caching_nodes()
 def winning_order(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:
     """Return the media among ``objects``, the one that wins over all others first."""
     found = [obj for obj in objects if medium_material(obj) is not None]

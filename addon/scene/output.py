@@ -78,7 +78,7 @@ def save_blend(path: Path | str) -> Path:
 
 
 def _keep_versions(target: Path, count: int) -> None:
-    """Number what was there, the newest 1; it stays in its place, too."""
+    """Keep what was there under numbers, the newest as 1; it stays in its place, too."""
     names = [target.with_name(f"{target.name}{number or ''}") for number in range(count + 1)]
     for older, newer in pairwise(reversed(names)):
         if newer == target and os.path.exists(target):

@@ -1,4 +1,4 @@
-"""Render passes: light of lamps through and off media, apart from all else that media refract and reflect.
+"""Render passes: direct light through and off media, apart from all else that media refract and reflect.
 
 The lobes of direct refraction and reflection are light that a medium's surface emits. Cycles keeps all of it apart in a
 light group of the media, and what the camera sees of it without a bounce in the Emission pass; the compositor does the
@@ -39,13 +39,14 @@ _MEDIA_LIGHT = "Media Light"
 def add_passes(scene: bpy.types.Scene) -> tuple[str, ...]:
     """Make every view layer that renders write its four passes as the layers of an OpenEXR file.
 
-    Direct Refraction is light of lamps that lobes refracted, seen through media; Direct Specular is what media emit or
-    reflect of lamps towards the camera; Indirect Refraction and Indirect Specular are all else that media refract and
+    Direct Refraction is direct light that lobes refracted, seen through media; Direct Specular is what media emit or
+    reflect of lights towards the camera; Indirect Refraction and Indirect Specular are all else that media refract and
     reflect. Where only media are seen their sum is the picture, unless that is denoised. The files lie in the folder of
     the scene's output.
 
-    The artist's own nodes, light groups and picture stay. Returns what was changed or stands in the way, in sentences;
-    a second call changes nothing.
+    The artist's own nodes, light groups and picture stay. A second call changes nothing.
+
+    :return: sentences: what was changed or stands in the way.
     """
     if scene.render.engine != "CYCLES":
         return (f"scene {scene.name!r} renders with {scene.render.engine}; its passes are Cycles': prepare it first",)
@@ -184,7 +185,7 @@ def _render_layers(
 def _writer(
     tree: bpy.types.NodeTree, scene: bpy.types.Scene, layer: bpy.types.ViewLayer
 ) -> bpy.types.CompositorNodeOutputFile | None:
-    """The node that writes the passes of a view layer, or None."""
+    """Return the node that writes the passes of a view layer, or None."""
     for node in tree.nodes:
         if node.bl_idname != "CompositorNodeOutputFile":
             continue
@@ -234,12 +235,12 @@ def _add_nodes(tree: bpy.types.NodeTree, scene: bpy.types.Scene, layer: bpy.type
 
 
 def _height(node: bpy.types.Node) -> float:
-    """Space that a node takes, which Blender knows once it is drawn."""
+    """Return the space that a node takes from top to bottom, which Blender knows once it is drawn."""
     return max(node.height, 22.0 * (len(node.inputs) + len(node.outputs)) + 100.0)
 
 
 def _path(scene: bpy.types.Scene, layer: str) -> tuple[str, str]:
-    """Folder and name of a file beside the scene's output."""
+    """Return the folder and the name of a file beside the scene's output."""
     folder, slash, name = scene.render.filepath.replace("\\", "/").rpartition("/")
     stem = PurePath(name).stem.rstrip("#_. ")
     words = [word for word in (stem, FILE_NAME, bpy.path.clean_name(layer)) if word]
@@ -247,7 +248,7 @@ def _path(scene: bpy.types.Scene, layer: str) -> tuple[str, str]:
 
 
 def _is_passes(tree: bpy.types.NodeTree | None) -> bool:
-    """Whether a group is that of this extension, with the sockets it was made with."""
+    """Return whether a group is that of this extension, with the sockets it was made with."""
     if tree is None or tree.bl_idname != "CompositorNodeTree" or MARK not in tree:
         return False
     sockets = {(item.in_out, item.name) for item in tree.interface.items_tree if item.item_type == "SOCKET"}
@@ -264,7 +265,7 @@ def _ensure_group() -> bpy.types.NodeTree:
 def _new_group() -> bpy.types.NodeTree:
     tree = bpy.data.node_groups.new(GROUP_NAME, "CompositorNodeTree")
     tree[MARK] = True
-    tree.description = "Parts what media refract and reflect into light of lamps and all else"
+    tree.description = "Parts what media refract and reflect into direct light and all else"
     for name in (*_SOURCES, _MEDIA_LIGHT):
         tree.interface.new_socket(name, in_out="INPUT", socket_type="NodeSocketColor")
     for name in PASSES:

@@ -10,7 +10,7 @@ import bpy
 
 from ..model import presets
 from ..model.folders import PACKAGE
-from ..model.parameters import ParameterError
+from ..model.parameter import ParameterError
 from ..model.presets import GROUPS, PRESET_FOLDER, Preset
 
 USER_GROUP = "My Presets"
@@ -54,8 +54,9 @@ class Catalogue:
 
 
 def user_folder() -> Path:
-    """Return the folder of the user's presets, which may not be there yet: the one that the preferences name, or else
-    one of the extension's own.
+    """Return the folder of the user's presets, which may not be there yet.
+
+    It is the one that the preferences name, or else one of the extension's own.
     """
     addon = bpy.context.preferences.addons.get(PACKAGE)
     chosen = getattr(addon and addon.preferences, "preset_folder", "")
@@ -72,7 +73,10 @@ def preset_names() -> tuple[str, ...]:
 
 
 def load_preset(key: str) -> Preset:
-    """Return a preset. Raises :class:`ParameterError` naming the preset that is unknown or wrong."""
+    """Return a preset.
+
+    :raises ParameterError: names the preset that is unknown or wrong.
+    """
     if key in presets.preset_names():
         return presets.load_preset(key)
     found = catalogue()
@@ -122,7 +126,7 @@ def _catalogue() -> Catalogue:
 
 
 def is_built_in(key: str, name: str) -> bool:
-    """Tell whether a preset of the extension's has a key or a name."""
+    """Return whether a preset of the extension's has a key or a name."""
     found = catalogue()
     return _has((preset for preset in found.presets.values() if preset.key not in found.own), key, name)
 
@@ -132,8 +136,9 @@ def _has(members: Iterable[Preset], key: str, name: str) -> bool:
 
 
 def save_user_preset(preset: Preset) -> Path:
-    """Write a preset of the user's, in place of one of its key. Raises :class:`ParameterError` if its name is taken by a
-    preset of the extension's.
+    """Write a preset of the user's, in place of one of its key, and return its path.
+
+    :raises ParameterError: if its name is taken by a preset of the extension's.
     """
     if is_built_in(preset.key, preset.name):
         raise ParameterError(f"{preset.name!r} is a preset of the extension's; choose another name")
@@ -141,7 +146,10 @@ def save_user_preset(preset: Preset) -> Path:
 
 
 def delete_user_preset(key: str) -> None:
-    """Remove a preset of the user's. Raises :class:`ParameterError` if it is none, or its file cannot be removed."""
+    """Remove a preset of the user's.
+
+    :raises ParameterError: if it is none, or its file cannot be removed.
+    """
     if key not in catalogue().own:
         own = ", ".join(sorted(catalogue().own)) or "none"
         raise ParameterError(f"{key!r} is no preset of yours; yours are: {own}")

@@ -9,64 +9,90 @@ from typing import Any
 import bpy
 import numpy as np
 
-from ..model.parameters import SETTINGS, SOCKETS, ParameterError
+from ..model.choice import keyword_of
+from ..model.parameter import Parameter, ParameterError
+from ..model.parameters import SETTINGS, SOCKETS
 from ..model.presets import Preset, key_of
-from ..nodes.animation import is_animated
-from .materials import (
-    DEPTH,
-    KEY_PROPERTY,
-    TRANSMITTANCE,
-    dielectric_node,
-    get_parameter,
-    is_preset,
-    measured_depth,
-    new_material,
-    parameter_socket,
-    rendered_node,
-    usable_spectrum_settings,
-    working_colour,
-)
+from ..nodes.animation import curves, is_animated
+from .material_spectra import spectrum_settings, usable_spectrum_settings
+from .materials import dielectric_node, get_parameter, parameter_socket, rendered_node
+from .new_materials import KEY_PROPERTY, new_material
 from .preset_library import load_preset
+from .preset_values import DEPTH, TRANSMITTANCE, measured_depth, preset_values, working_colour
 from .shapes import thickness
 
 SAME_DEPTH = 2.0
-"""How many times as deep a material's colour may be as an object's own for the object to share it: as far as red wine in
-one glass may differ from that in another.
+"""How many times as deep a material's colour may be as an object's own for the object to share it.
+
+So far red wine in one glass may differ from that in another.
 """
 
 
 def preset_material(
-    preset: str, objects: Iterable[bpy.types.Object] = (), *, fit: bool = True, use_edited: bool = False
+    preset: str | Preset, objects: Iterable[bpy.types.Object] = (), *, fit: bool = True, use_edited: bool = False
 ) -> bpy.types.Material:
     """Return a material of a preset for objects: one of this file that is as the preset has it, or else a new one.
 
     Where the preset has a colour, the thickest of the objects shows it: that thickness is the Transmittance Depth. Only a
     material whose depth is within a factor of :data:`SAME_DEPTH` of it is used again, or one that nothing else uses.
 
+    :param preset: a preset, or its key.
     :param fit: False takes the depth at which the preset was measured.
     :param use_edited: take what :func:`edited_material` finds first.
     :raises ParameterError: for an unknown preset.
     """
-    loaded = load_preset(preset)
+    loaded = load_preset(preset) if isinstance(preset, str) else preset
     edited = edited_material(loaded, objects) if use_edited else None
     if edited is not None:
         return edited
     unchanged = [material for material in _named(loaded) if is_preset(material, loaded)]
     if not loaded.has_colour:
-        return unchanged[0] if unchanged else new_material(loaded.name, preset=preset)
+        return unchanged[0] if unchanged else new_material(loaded.name, preset=loaded)
     depth = _fitting_depth(loaded, objects if fit else ())
     near = [material for material in unchanged if _distance(material, depth) <= SAME_DEPTH]
     if near:
         return min(near, key=lambda material: _distance(material, depth))
     unused = next((material for material in unchanged if not _is_used(material, objects)), None)
-    material = unused or new_material(loaded.name, preset=preset)
+    material = unused or new_material(loaded.name, preset=loaded)
     rendered_node(material).inputs[DEPTH.name].default_value = depth
     return material
 
 
+def is_preset(material: bpy.types.Material, preset: Preset) -> bool:
+    """Return whether a material of this file is what :func:`new_material` makes of a preset.
+
+    Its name and its Transmittance Depth may be others.
+    """
+    node = dielectric_node(material)
+    if node is None or material.library is not None or len(material.node_tree.nodes) > 3:
+        return False
+    values = preset_values(preset)
+    settings = {parameter.keyword: keyword_of(values.get(parameter, parameter.default)) for parameter in SETTINGS}
+    return (
+        not any(socket.is_linked for socket in node.inputs)
+        and not any(curves(material.node_tree.animation_data))
+        and all(
+            _holds(node, parameter, values.get(parameter, parameter.default))
+            for parameter in SOCKETS
+            if parameter != DEPTH
+        )
+        and spectrum_settings(material) == settings
+    )
+
+
+def _holds(node: bpy.types.ShaderNodeGroup, parameter: Parameter, value: Any) -> bool:
+    if parameter.kind == "SHADER":
+        return True
+    found = get_parameter(node, parameter)
+    if isinstance(found, str):
+        return found == keyword_of(value)
+    return np.allclose(found, value, rtol=1e-5, atol=1e-9)
+
+
 def edited_material(preset: Preset, objects: Iterable[bpy.types.Object] = ()) -> bpy.types.Material | None:
-    """Return a material of this file that has the name of a preset and is not as that has it any more, or None; one of the
-    objects' own if there are several.
+    """Return a material of this file that has the name of a preset and was edited since, or None.
+
+    If there are several, it is one of the objects' own.
     """
     theirs = {slot.material for obj in objects for slot in obj.material_slots}
     found = [
@@ -78,8 +104,9 @@ def edited_material(preset: Preset, objects: Iterable[bpy.types.Object] = ()) ->
 
 
 def fit_depth(material: bpy.types.Material, depth: float) -> None:
-    """Set the Transmittance Depth of a nested dielectric where an artist would. Raises :class:`ParameterError` if it cannot
-    be set to that, or other nodes, keyframes or drivers make it.
+    """Set the Transmittance Depth of a nested dielectric, in scene units, where an artist would.
+
+    :raises ParameterError: if it cannot be set to that, or other nodes, keyframes or drivers make it.
     """
     socket = parameter_socket(material, DEPTH.name)
     if socket is None or is_animated(socket.id_data, socket):
@@ -97,8 +124,9 @@ def preset_of(material: bpy.types.Material | None) -> Preset | None:
 
 
 def preset_from(material: bpy.types.Material, name: str, group: str, tags: Iterable[str], description: str) -> Preset:
-    """Make a preset of the values that a nested dielectric has now, its lengths in metres. Raises :class:`ParameterError`
-    for a name that cannot be one.
+    """Make a preset of the values that a nested dielectric has now, its lengths in metres.
+
+    :raises ParameterError: for a name that cannot be one.
     """
     node = rendered_node(material)
     values = {}
@@ -131,19 +159,20 @@ def _named(preset: Preset) -> Iterator[bpy.types.Material]:
 
 
 def _fitting_depth(preset: Preset, objects: Iterable[bpy.types.Object]) -> float:
-    """The thickness of the thickest, or where there is none the depth at which the preset was measured."""
+    """Return the thickness of the thickest object; without objects, the depth at which the preset was measured."""
     return DEPTH.bounded(max(map(thickness, objects), default=0.0) or measured_depth(preset))
 
 
 def _distance(material: bpy.types.Material, depth: float) -> float:
-    """How many times as deep a material's colour is, or the other way round."""
+    """Return how many times as deep a material's colour is, or the other way round; 1 or more."""
     found = rendered_node(material).inputs[DEPTH.name].default_value
     return max(found / depth, depth / found) if found > 0.0 else inf
 
 
 def _is_used(material: bpy.types.Material, leaving: Iterable[bpy.types.Object]) -> bool:
-    """Whether an object has a material but those that are to get another in its place, or somebody wants it kept; the mesh
-    of a deleted object does not count.
+    """Return whether a material is used by others than the objects that are to get another in its place.
+
+    One that somebody wants kept is used, too; the mesh of a deleted object does not count.
     """
     left = set()
     for obj in leaving:
@@ -157,7 +186,7 @@ def _is_used(material: bpy.types.Material, leaving: Iterable[bpy.types.Object]) 
 
 
 def _written(value: Any) -> Any:
-    """A socket's value as a file has it: numbers in as few digits as single precision needs."""
+    """Return a socket's value as a file has it: numbers in as few digits as single precision needs."""
     if isinstance(value, float):
         return float(str(np.float32(value)))
     return list(map(_written, value)) if isinstance(value, (list, tuple)) else value

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..model.parameters import MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
+from ..model.parameter import MAX_PRIORITY, PRIORITY_PROPERTY, ParameterError
 from ..nodes.animation import curves, is_animated
-from ..nodes.lookups import unchanged_nodes
-from ..nodes.trees import mend_nodes
+from ..nodes.lookups import caching_nodes
+from ..nodes.mending import repair_nodes
 from .materials import dielectric_node, medium_material, parameter_socket
 from .media import all_objects, get_priority, material_priority, own_priority, set_priority
 
@@ -43,11 +43,11 @@ class Row:
 
     @property
     def is_own(self) -> bool:
-        """Whether an object has the number, not a material."""
+        """Return whether an object has the number, not a material."""
         return isinstance(self.owner, bpy.types.Object)
 
 
-@unchanged_nodes()
+@caching_nodes()
 def priority_rows(objects: Iterable[bpy.types.Object]) -> tuple[Row, ...]:
     """Return the places that the media among some objects have, the one that wins over all others first."""
     found: dict[Owner, tuple[int, list[bpy.types.Object]]] = {}
@@ -86,7 +86,7 @@ def _number(row: Row) -> int:
 
 
 def _named(rows: Sequence[Row], count: int) -> str:
-    """The first few of many, for a sentence."""
+    """Return the names of the first few of many places, for a sentence."""
     names = [row.owner.name for row in rows[:MOST_NAMES]]
     more = count - len(names)
     return ", ".join(names) + (f" and {more} more" if more else "")
@@ -110,13 +110,16 @@ def hindrance(owner: Owner) -> str:
 
 
 def set_number(owner: Owner, number: int) -> None:
-    """Give a material, or an object, a number. Raises :class:`ParameterError` if it cannot be changed."""
+    """Give a material, or an object, a number.
+
+    :raises ParameterError: if it cannot be changed.
+    """
     _require_changeable(owner)
     if isinstance(owner, bpy.types.Object):
         set_priority(owner, number)
     else:
         parameter_socket(owner, "Priority").default_value = number
-        mend_nodes(owner)
+        repair_nodes(owner)
 
 
 def _require_changeable(owner: Owner) -> None:
@@ -126,11 +129,13 @@ def _require_changeable(owner: Owner) -> None:
 
 
 def move(scene: bpy.types.Scene, owner: Owner, step: int) -> bool:
-    """Move a material, or an object, one place up (-1) or down (+1) in the winning order of a scene; False if it is at the
-    end already. No other number changes.
+    """Move a material, or an object, one place up (-1) or down (+1) in the winning order of a scene.
 
     What shares its number with others is parted from them; what has one alone passes the next. An object that relies on its
-    material gets a number of its own. Raises :class:`ParameterError` if it cannot be changed, or no number is free there.
+    material gets a number of its own. No other number changes.
+
+    :return: False if it is at the end already.
+    :raises ParameterError: if it cannot be changed, or no number is free there.
     """
     taken = sorted(
         {row.priority for row in priority_rows(all_objects(scene)) if row.owner != owner and row.objects != (owner,)}
@@ -149,7 +154,7 @@ def move(scene: bpy.types.Scene, owner: Owner, step: int) -> bool:
     if behind - before < 2:
         where = (
             f"between {before} and {behind}"
-            if 0 <= before and behind <= MAX_PRIORITY
+            if before >= 0 and behind <= MAX_PRIORITY
             else (f"below {behind}" if before < 0 else f"above {before}")
         )
         raise ParameterError(
@@ -165,13 +170,14 @@ def move(scene: bpy.types.Scene, owner: Owner, step: int) -> bool:
 
 
 def space_out() -> tuple[list[str], list[str]]:
-    """Part all numbers of the open file from each other, in steps of ten where there is room; who wins over whom, and who has
-    the same number, stays as it is in every scene.
+    """Part all numbers of the open file from each other, in steps of ten where there is room.
 
-    Returns what was changed and what could not be, in sentences.
+    Who wins over whom, and who has the same number, stays as it is in every scene.
+
+    :return: what was changed and what could not be, in sentences.
     """
     levels: dict[int, list[Owner]] = {}
-    with unchanged_nodes():
+    with caching_nodes():
         for material in bpy.data.materials:
             if dielectric_node(material) is not None:
                 levels.setdefault(material_priority(material), []).append(material)
@@ -212,7 +218,7 @@ def spaced(numbers: Sequence[int], fixed: Collection[int]) -> dict[int, int]:
 
 
 def _spread(count: int, before: int, behind: int) -> list[int]:
-    """As many numbers between two that are taken: in tens if they fit, else as far apart as can be."""
+    """Return as many numbers between two that are taken: in tens if they fit, else as far apart as can be."""
     start = max(before, 0)
     if start + STEP * (count + 1) <= behind:
         return [start + STEP * (index + 1) for index in range(count)]

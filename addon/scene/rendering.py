@@ -42,7 +42,10 @@ class RenderError(RuntimeError):
 
 
 def file_format_of(output: Path | str) -> str:
-    """Return what Blender calls the format that a path's ending names; raises :class:`RenderError` if it names none."""
+    """Return what Blender calls the format that a path's ending names.
+
+    :raises RenderError: if it names none.
+    """
     file_format = FILE_FORMATS.get(Path(output).suffix.lower())
     if file_format is None:
         raise RenderError(f"{Path(output).name}: the ending must be one of {', '.join(FILE_FORMATS)}")
@@ -104,8 +107,10 @@ def render_frame(
 
 
 def sampling_time(scene: bpy.types.Scene, samples: int, percentage: int) -> float:
-    """Return the seconds of CPU time that samples take at a percentage of a scene's resolution, without what comes before them.
-    Raises :class:`RenderError` if Cycles does not say when it begins and ends.
+    """Return the seconds of CPU time that samples take, without what comes before them.
+
+    :param percentage: of the scene's resolution.
+    :raises RenderError: if Cycles does not say when it begins and ends.
     """
     moments: dict[str, float] = {}
 
@@ -187,7 +192,7 @@ def _image_format(scene: bpy.types.Scene, file_format: str) -> Iterator[None]:
 
 
 def _size(render: bpy.types.RenderSettings) -> tuple[int, int] | None:
-    """Width and height of the pictures in pixels, if a border does not cut them and views do not share them."""
+    """Return the width and height of the pictures in pixels; None where a border cuts them or views share them."""
     if render.use_multiview or (render.use_border and render.use_crop_to_border):
         return None
     return tuple(side * render.resolution_percentage // 100 for side in (render.resolution_x, render.resolution_y))
@@ -214,7 +219,7 @@ def _file_outputs_held_back(scene: bpy.types.Scene) -> Iterator[None]:
 
 
 def _folder(scene: bpy.types.Scene, node: bpy.types.CompositorNodeOutputFile) -> Path | None:
-    """Where a File Output node writes; None where its own name is part of that, which scenes cannot tell."""
+    """Return where a File Output node writes; None where its own name is part of that, which scenes cannot tell."""
     if "{node_name}" in node.directory:
         return None
     with _set(scene.render, filepath=f"{node.directory}/x"):

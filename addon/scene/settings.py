@@ -10,7 +10,7 @@ from typing import Any
 
 import bpy
 
-from ..nodes.compatibility import engine_name
+from ..nodes.render_settings import engine_name
 
 AT_LEAST = {
     "cycles.max_bounces": 64,
@@ -126,7 +126,7 @@ def _sentence(scene: bpy.types.Scene, path: str, before: Any, value: Any) -> str
 
 
 def _in_words(scene: bpy.types.Scene, path: str, value: Any) -> str:
-    """A value as it stands in Blender's own panels."""
+    """Return a value as it stands in Blender's own panels."""
     if path == ENGINE:
         return engine_name(value)
     if isinstance(value, bool):

@@ -10,8 +10,8 @@ import numpy as np
 from ..geometry import meshes
 
 
-def mesh_of(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
-    """Return :func:`triangles_of` an evaluated object; none of one that shows nothing."""
+def evaluated_triangles(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
+    """Return what :func:`mesh_triangles` returns of an evaluated object; no triangles if it shows nothing."""
     try:
         mesh = evaluated.to_mesh()
     except RuntimeError:
@@ -19,12 +19,12 @@ def mesh_of(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
     if mesh is None:
         return np.empty((0, 3), dtype=np.float32), np.empty((0, 3), dtype=np.int32)
     try:
-        return triangles_of(mesh)
+        return mesh_triangles(mesh)
     finally:
         evaluated.to_mesh_clear()
 
 
-def triangles_of(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
+def mesh_triangles(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Return a mesh's vertices, (n, 3) float32, and the corners of its triangles, (m, 3) int32."""
     mesh.calc_loop_triangles()
     vertices = np.empty((len(mesh.vertices), 3), dtype=np.float32)
@@ -41,7 +41,7 @@ def triangles_of(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
 _NUMBERS = {"FLOAT": np.float32, "INT": np.int32, "BOOLEAN": np.bool_}
 
 
-def content_of(mesh: bpy.types.Mesh) -> bytes:
+def mesh_digest(mesh: bpy.types.Mesh) -> bytes:
     """Return a digest of all numbers that a mesh carries, SHA-256."""
     digest = sha256()
     for attribute in mesh.attributes:
@@ -57,14 +57,15 @@ def content_of(mesh: bpy.types.Mesh) -> bytes:
 
 
 def thickness(obj: bpy.types.Object) -> float:
-    """Return how thick a body is as it stands in the scene, in scene units: the mean length of the ways through it. For
-    what is not closed it is the smallest side of its box. 0 for what has no extent.
+    """Return how thick a body is as it stands in the scene, in scene units: the mean length of the ways through it.
+
+    For what is not closed it is the smallest side of its box. 0 for what has no extent.
     """
     evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
     # What is in no view layer has not been placed yet.
     place = evaluated.matrix_world if evaluated.is_evaluated or obj.parent else obj.matrix_basis
     matrix = np.array(place, dtype=np.float64)[:3, :3]
-    vertices, triangles = mesh_of(evaluated)
+    vertices, triangles = evaluated_triangles(evaluated)
     if not meshes.is_closed(triangles):
         triangles = meshes.same_places(vertices)[triangles]
     if len(triangles) and meshes.is_closed(triangles):

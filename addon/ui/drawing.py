@@ -28,14 +28,14 @@ class Sidebar:
 
 
 def draw_alert(layout: bpy.types.UILayout, context: bpy.types.Context, text: str) -> None:
-    """A problem, in red."""
+    """Draw a problem, in red."""
     lines = layout.column()
     lines.alert = True
     draw_text(lines, context, text, "ERROR")
 
 
 def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
-    """A text in as many lines as the region's width makes of it, the first with an icon."""
+    """Draw a text in as many lines as the region's width makes of it, the first with an icon."""
     lines = layout.column(align=True)
     characters = int(context.region.width / context.preferences.system.ui_scale / 8.0)
     for index, line in enumerate(textwrap.wrap(text[0].upper() + text[1:], max(characters, 20))):
@@ -43,7 +43,7 @@ def draw_text(layout: bpy.types.UILayout, context: bpy.types.Context, text: str,
 
 
 def draw_value(layout: bpy.types.UILayout, name: str, value: str, factor: float = 0.4) -> None:
-    """A name and a value to read, placed as a property's; the name takes that part of the width."""
+    """Draw a name and a value to read, placed as a property's; the name takes that part of the width."""
     columns = layout.split(factor=factor)
     label = columns.row()
     label.alignment = "RIGHT"
@@ -54,7 +54,7 @@ def draw_value(layout: bpy.types.UILayout, name: str, value: str, factor: float 
 def draw_parameter(
     layout: bpy.types.UILayout, material: bpy.types.Material, keyword: str, has_effect: bool = True
 ) -> None:
-    """A parameter of a medium to edit, greyed out where it does not show in the picture; or what is plugged into it.
+    """Draw a parameter of a medium to edit, greyed out where it does not show in the picture, or what is plugged into it.
 
     Names stand within the fields or above them: beside them they would be cut at the default width of Blender's regions.
     """

@@ -5,11 +5,11 @@ from __future__ import annotations
 import bpy
 
 from ..nodes.compatibility import blender_problem
-from .panels.media_list import listed_media
+from .media_list import listed_media
 
 
 def supported(cls: type[bpy.types.Operator]) -> bool:
-    """Tell whether this Blender can render nested dielectrics; if not, the operator says why."""
+    """Return whether this Blender can render nested dielectrics; if not, the operator says why."""
     problem = blender_problem()
     if problem:
         cls.poll_message_set(problem)
@@ -17,7 +17,7 @@ def supported(cls: type[bpy.types.Operator]) -> bool:
 
 
 def has_media(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """Tell whether the scene has media; if not, the operator says what to do."""
+    """Return whether the scene has media; if not, the operator says what to do."""
     if not listed_media(context.scene).rows:
         cls.poll_message_set("The scene has no medium; assign a preset first")
         return False

@@ -8,7 +8,7 @@ import bpy
 
 from ..model.folders import PACKAGE, ROOT
 from ..scene.preset_library import user_folder
-from .presets import asset_library
+from . import asset_library
 
 CLEAN, EDITED = "CLEAN", "EDITED"
 FIT, MEASURED = "FIT", "MEASURED"

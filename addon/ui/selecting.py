@@ -8,9 +8,11 @@ import bpy
 
 
 def select_only(layer: bpy.types.ViewLayer, objects: Sequence[bpy.types.Object]) -> list[str]:
-    """Make those of some objects that are visible the only selected ones, the first of them active; nothing if none is.
+    """Make those of some objects that are visible the only selected ones, the first of them active.
 
-    Returns why the others are not selected, in sentences.
+    If none is visible, the selection stays.
+
+    :return: why the others are not selected, in sentences.
     """
     chosen = [obj for obj in objects if not unreachable(layer, obj)]
     if chosen:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from itertools import groupby
 from pathlib import Path
 
-from nested_dielectric.model import spectra
-from nested_dielectric.model.parameters import PARAMETERS, Limit, Parameter
+from nested_dielectric.model import distributions
+from nested_dielectric.model.parameter import Limit, Parameter
+from nested_dielectric.model.parameters import PARAMETERS
 from nested_dielectric.model.presets import Preset, all_presets
 
 FOLDER = Path(__file__).resolve().parent.parent
@@ -60,7 +61,7 @@ def parameters_page() -> str:
             *map(_parameter_row, members),
         ]
         parts += [f"## {panel}\n", _table(rows), *_choices(members)]
-    words = ", ".join(f"`{choice.keyword}` ({choice.description})" for choice in spectra.DISTRIBUTIONS)
+    words = ", ".join(f"`{choice.keyword}` ({choice.description})" for choice in distributions.DISTRIBUTIONS)
     return "\n".join((*parts, SPECTRUM_NOTE.format(words=words)))
 
 

@@ -13,10 +13,10 @@ import bpy
 import colours
 import frames
 import lamps
+import library
 import nesting
 import numpy as np
 
-import library
 import nested_dielectric as nd
 from nested_dielectric.scene.rendering import render_frame
 

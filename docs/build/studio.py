@@ -13,7 +13,7 @@ import bpy
 from mathutils import Matrix, Vector
 
 import nested_dielectric as nd
-from nested_dielectric.demo.iced_water import lathe, rounded
+from nested_dielectric.demo.glassware import lathe, rounded
 
 Colour = tuple[float, float, float]
 

@@ -15,7 +15,7 @@ import bpy
 import numpy as np
 from mathutils import Euler, Matrix, Vector
 
-from nested_dielectric.demo import iced_water
+from nested_dielectric.demo import glassware
 from nested_dielectric.model.presets import Preset
 from nested_dielectric.scene.media import assign
 
@@ -71,19 +71,19 @@ def _drink(scene: bpy.types.Scene, key: str) -> None:
 
 def _tumbler(scene: bpy.types.Scene, glass: str, liquid: str) -> None:
     """A straw stands in a liquid, which reaches into the glass that holds it."""
-    profile = iced_water.rounded(iced_water.TUMBLER_OUTSIDE + iced_water.TUMBLER_INSIDE)
-    assign(_add(scene, "Tumbler", iced_water.lathe(profile)), glass)
-    _, (corner_r, corner_z, rounding), (_, floor, _) = iced_water.TUMBLER_INSIDE
-    grown = iced_water.OVERLAP
-    rim = iced_water.inner_radius(LIQUID_LEVEL) + grown
+    profile = glassware.rounded(glassware.TUMBLER_OUTSIDE + glassware.TUMBLER_INSIDE)
+    assign(_add(scene, "Tumbler", glassware.lathe(profile)), glass)
+    _, (corner_r, corner_z, rounding), (_, floor, _) = glassware.TUMBLER_INSIDE
+    grown = glassware.OVERLAP
+    rim = glassware.inner_radius(LIQUID_LEVEL) + grown
     body = (
         (0.0, floor - grown, 0.0),
         (corner_r + grown, corner_z - grown, rounding + grown),
         (rim, LIQUID_LEVEL, 0.0),
         (0.0, LIQUID_LEVEL, 0.0),
     )
-    assign(_add(scene, "Liquid", iced_water.lathe(iced_water.rounded(body))), liquid)
-    straw = _add(scene, "Straw", iced_water.straw_mesh())
+    assign(_add(scene, "Liquid", glassware.lathe(glassware.rounded(body))), liquid)
+    straw = _add(scene, "Straw", glassware.straw_mesh())
     straw.matrix_world = (
         Matrix.Translation((-0.17, 0.05, 0.175)) @ Matrix.Rotation(radians(17), 4, "Y") @ Matrix.Scale(1.5, 4)
     )
@@ -92,23 +92,23 @@ def _tumbler(scene: bpy.types.Scene, glass: str, liquid: str) -> None:
 
 def _ball(scene: bpy.types.Scene, key: str) -> None:
     """A ball with a bubble of air."""
-    assign(_add(scene, "Ball", iced_water.spheres([(Vector((0.0, 0.0, 0.52)), 0.52)])), key)
-    assign(_add(scene, "Bubble", iced_water.spheres([(Vector((0.16, -0.12, 0.66)), 0.14)])), AIR)
+    assign(_add(scene, "Ball", glassware.spheres([(Vector((0.0, 0.0, 0.52)), 0.52)])), key)
+    assign(_add(scene, "Bubble", glassware.spheres([(Vector((0.16, -0.12, 0.66)), 0.14)])), AIR)
 
 
 def _air(scene: bpy.types.Scene, key: str) -> None:
     """Bubbles in a ball of glass."""
-    assign(_add(scene, "Ball", iced_water.spheres([(Vector((0.0, 0.0, 0.52)), 0.52)])), GLASS)
+    assign(_add(scene, "Ball", glassware.spheres([(Vector((0.0, 0.0, 0.52)), 0.52)])), GLASS)
     bubbles = [((0.0, 0.0, 0.55), 0.24), ((0.27, -0.1, 0.3), 0.1), ((-0.25, -0.1, 0.35), 0.07)]
     bubbles.append(((0.2, 0.0, 0.83), 0.06))
-    assign(_add(scene, "Bubbles", iced_water.spheres((Vector(place), radius) for place, radius in bubbles)), key)
+    assign(_add(scene, "Bubbles", glassware.spheres((Vector(place), radius) for place, radius in bubbles)), key)
 
 
 def _bubble(scene: bpy.types.Scene, key: str) -> None:
     """A bubble in the air, and a small one that touches it."""
     _add_panel(scene, Vector((1.6, -3.4, 1.8)), Vector((0.0, 0.0, 0.5)))
     bubbles = [((-0.04, 0.0, 0.53), 0.5), ((0.42, -0.22, 0.2), 0.16)]
-    assign(_add(scene, "Bubbles", iced_water.spheres((Vector(place), radius) for place, radius in bubbles)), key)
+    assign(_add(scene, "Bubbles", glassware.spheres((Vector(place), radius) for place, radius in bubbles)), key)
 
 
 def _film(scene: bpy.types.Scene, key: str) -> None:
@@ -138,10 +138,10 @@ def _puddle(scene: bpy.types.Scene, key: str) -> None:
     """A puddle with a ball of glass in it."""
     _add_panel(scene, Vector((0.2, 3.0, 2.0)), Vector((0.0, 0.0, 0.0)), 50.0)
     profile = ((0.0, 0.003, 0.0), (0.9, 0.003, 0.0), (0.96, 0.03, 0.012), (0.9, 0.055, 0.03), (0.0, 0.06, 0.0))
-    puddle = _add(scene, "Puddle", iced_water.lathe(iced_water.rounded(profile)))
+    puddle = _add(scene, "Puddle", glassware.lathe(glassware.rounded(profile)))
     puddle.scale = (1.0, 0.8, 1.0)
     assign(puddle, key)
-    assign(_add(scene, "Ball", iced_water.spheres([(Vector((0.1, 0.1, 0.27)), 0.26)])), GLASS)
+    assign(_add(scene, "Ball", glassware.spheres([(Vector((0.1, 0.1, 0.27)), 0.26)])), GLASS)
 
 
 def _block(scene: bpy.types.Scene, key: str) -> None:
@@ -152,7 +152,7 @@ def _block(scene: bpy.types.Scene, key: str) -> None:
     block = _add(scene, "Block", _mesh(shape, smooth=True))
     block.matrix_world = Matrix.Translation((0.0, 0.0, 0.392)) @ Matrix.Rotation(radians(32), 4, "Z")
     assign(block, key)
-    assign(_add(scene, "Bubble", iced_water.spheres([(Vector((0.08, -0.1, 0.47)), 0.13)])), AIR)
+    assign(_add(scene, "Bubble", glassware.spheres([(Vector((0.08, -0.1, 0.47)), 0.13)])), AIR)
 
 
 def _ice(scene: bpy.types.Scene, key: str) -> None:
@@ -160,7 +160,7 @@ def _ice(scene: bpy.types.Scene, key: str) -> None:
     for index, (place, turn, size) in enumerate(
         (((-0.1, 0.06, 0.36), (0.0, 0.0, 0.55), 2.55), ((0.42, -0.3, 0.175), (0.0, 0.0, 1.25), 1.25))
     ):
-        cube = _add(scene, "Ice", iced_water.ice_mesh(index + 1))
+        cube = _add(scene, "Ice", glassware.ice_mesh(index + 1))
         cube.matrix_world = Matrix.LocRotScale(Vector(place), Euler(turn), Vector((size,) * 3))
         assign(cube, key)
     random = Random(3)
@@ -168,7 +168,7 @@ def _ice(scene: bpy.types.Scene, key: str) -> None:
     for _ in range(22):
         place = Vector((random.gauss(-0.1, 0.09), random.gauss(0.06, 0.09), random.gauss(0.36, 0.1)))
         bubbles.append((place, 0.008 + 0.03 * random.random() ** 2))
-    assign(_add(scene, "Bubbles", iced_water.spheres(bubbles)), AIR)
+    assign(_add(scene, "Bubbles", glassware.spheres(bubbles)), AIR)
 
 
 def _gem(scene: bpy.types.Scene, key: str) -> None:

@@ -16,7 +16,7 @@ from functools import cache
 
 import numpy as np
 
-from nested_dielectric.model import spectra
+from nested_dielectric.model import colour_science
 
 from .absorption import Term
 
@@ -39,7 +39,7 @@ def transmittance(absorption: Iterable[Term], metres: float) -> np.ndarray:
 @cache
 def _observer() -> np.ndarray:
     """D65 times the CIE 1931 colour matching functions at WAVELENGTHS, so that the Ys add up to 1; (81, 3)."""
-    colour = spectra._colour()
+    colour = colour_science.colour_science()
     shape = colour.SpectralShape(WAVELENGTHS[0], WAVELENGTHS[-1], 5.0)
     light = colour.SDS_ILLUMINANTS["D65"].copy().align(shape).values
     observer = colour.MSDS_CMFS["CIE 1931 2 Degree Standard Observer"].copy().align(shape).values
@@ -54,7 +54,7 @@ def tristimulus(spectrum: np.ndarray) -> np.ndarray:
 
 def linear_rgb(spectrum: np.ndarray) -> np.ndarray:
     """Linear Rec.709 RGB of a spectrum of transmittance, relative to daylight itself and not cut off."""
-    from_xyz = np.linalg.inv(spectra._colour().RGB_COLOURSPACES["ITU-R BT.709"].matrix_RGB_to_XYZ)
+    from_xyz = np.linalg.inv(colour_science.colour_science().RGB_COLOURSPACES["ITU-R BT.709"].matrix_RGB_to_XYZ)
     white = from_xyz @ tristimulus(np.ones_like(spectrum))
     return from_xyz @ tristimulus(spectrum) / white
 

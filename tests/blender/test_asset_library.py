@@ -3,28 +3,29 @@
 import importlib.util
 import json
 import re
-import subprocess
 import sys
-from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
-from scenes import add_camera, add_sphere, new_scene, render, set_world
+from dropped_media import ROOT, append, build_library
+from scenes import add_sphere, new_scene
 
 import nested_dielectric as nd
+from nested_dielectric.model.parameter import GROUP_NAME
 from nested_dielectric.model.presets import GROUPS, load_preset, preset_names
-from nested_dielectric.nodes import node_group
+from nested_dielectric.nodes.material_version import find_group, group_version
 from nested_dielectric.scene import materials, shapes
-from nested_dielectric.scene.materials import KEY_PROPERTY, is_preset
-from nested_dielectric.ui import preferences
-from nested_dielectric.ui.presets import asset_library, dropped
+from nested_dielectric.scene.new_materials import KEY_PROPERTY
+from nested_dielectric.scene.preset_materials import is_preset
+from nested_dielectric.ui import asset_library, preferences
+from nested_dielectric.ui.presets import dropped
 from nested_dielectric.ui.presets.preset_pictures import picture_path
 
-ROOT = Path(__file__).resolve().parents[2]
-KEYS = ("water", "bk7", "diamond")
 
-quick = pytest.mark.quick
+@pytest.fixture(scope="module")
+def library(tmp_path_factory):
+    return build_library(tmp_path_factory.mktemp("assets"))
 
 
 def module(name: str):
@@ -35,25 +36,6 @@ def module(name: str):
     return found
 
 
-@pytest.fixture(scope="module")
-def library(tmp_path_factory):
-    """The folder of the library as ``make extension`` builds it."""
-    folder = tmp_path_factory.mktemp("assets") / "nested_dielectric" / "library"
-    done = subprocess.run(
-        [sys.executable, ROOT / "presets" / "assets" / "library.py", folder], cwd=ROOT, capture_output=True, text=True
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return folder
-
-
-def append(library: Path, *names: str) -> list[bpy.types.Material]:
-    """Append materials one after the other, as dropping them does."""
-    for name in names:
-        bpy.ops.wm.append(directory=f"{library / asset_library.FILE.name}/Material/", filename=name)
-    return [bpy.data.materials[name] for name in names]
-
-
-@quick
 def test_the_library_holds_every_preset_once_with_its_catalogue_tags_licence_and_priority(library):
     new_scene()
     with bpy.data.libraries.load(str(library / asset_library.FILE.name), assets_only=True) as (held, loaded):
@@ -78,18 +60,16 @@ def test_the_library_holds_every_preset_once_with_its_catalogue_tags_licence_and
     assert len({material.node_tree.nodes["Nested Dielectric"].node_tree for material in loaded.materials}) == 1
 
 
-@quick
 def test_the_library_stays_small(library):
     """Ten times as many media as there were in the first one stay below 25 MB, what the zip has room for."""
     size = (library / asset_library.FILE.name).stat().st_size
     assert size < 400_000 * len(preset_names())
 
 
-@quick
 def test_what_is_dragged_from_the_library_is_a_medium_of_one_group_with_its_priority(library, registered, capfd):
     materials = append(library, "Water", "Diamond")
-    groups = [tree for tree in bpy.data.node_groups if tree.name.startswith(node_group.GROUP_NAME)]
-    assert [tree.name for tree in groups if node_group.group_version(tree)] == ["Nested Dielectric"]
+    groups = [tree for tree in bpy.data.node_groups if tree.name.startswith(GROUP_NAME)]
+    assert [tree.name for tree in groups if group_version(tree)] == ["Nested Dielectric"]
     kept = (*bpy.data.texts, *bpy.data.node_groups, *bpy.data.images, *bpy.data.materials)
     assert not [data.name for data in kept if re.search(r"\.\d{3}$", data.name)]
     assert not [data.name for data in kept if data.library]
@@ -97,20 +77,9 @@ def test_what_is_dragged_from_the_library_is_a_medium_of_one_group_with_its_prio
         ball = add_sphere(key, 1.0, material)
         assert nd.get_priority(ball) == load_preset(key).parameters["priority"]
         assert material[KEY_PROPERTY] == key
-        assert material.node_tree.nodes["Nested Dielectric"].node_tree == node_group.find_group()
+        assert material.node_tree.nodes["Nested Dielectric"].node_tree == find_group()
     assert not [each for each in nd.prepare(bpy.context.scene).problems if "version" in str(each)]
     assert "Error" not in "".join(capfd.readouterr())
-
-
-def test_media_from_the_library_render_as_those_that_are_assigned(library, registered):
-    """In a white world glass without absorption shows white where rays find a way out: within 1 %, what bounces leave."""
-    new_scene(24)
-    material = append(library, "BK7 Glass")[0]
-    add_sphere("Ball", 1.0, material)
-    set_world()
-    add_camera((0.1, -5.0, 0.2), (0.0, 0.0, 0.0), 3.0)
-    nd.prepare(bpy.context.scene)
-    assert render(4).reshape(-1, 3).mean(axis=0) == pytest.approx([1.0, 1.0, 1.0], abs=0.01)
 
 
 @pytest.fixture
@@ -126,7 +95,6 @@ def libraries(library, monkeypatch):
     assert {each.name: each.path for each in listed} == before
 
 
-@quick
 def test_the_library_is_listed_while_the_extension_is_registered_and_never_twice(libraries, library):
     nd.register()
     ours = [each for each in libraries if each.path == str(library)]
@@ -139,7 +107,6 @@ def test_the_library_is_listed_while_the_extension_is_registered_and_never_twice
     assert len([each for each in libraries if each.path == str(library)]) == 1
 
 
-@quick
 def test_a_library_that_another_installation_left_is_taken_over_and_the_users_are_not(libraries, library, tmp_path):
     libraries.new(name="Nested Dielectric", directory=str(tmp_path))
     libraries.new(name="Nested Dielectric", directory=str(tmp_path / "gone" / "nested_dielectric" / "library"))
@@ -152,7 +119,6 @@ def test_a_library_that_another_installation_left_is_taken_over_and_the_users_ar
         libraries.remove(each)
 
 
-@quick
 def test_the_preferences_take_the_library_out_and_put_it_back(libraries, library):
     addon = bpy.context.preferences.addons.new()
     addon.module = preferences.PACKAGE
@@ -170,7 +136,6 @@ def test_the_preferences_take_the_library_out_and_put_it_back(libraries, library
         bpy.context.preferences.addons.remove(addon)
 
 
-@quick
 def test_without_a_library_none_is_listed(libraries, monkeypatch, tmp_path):
     monkeypatch.setattr(asset_library, "FILE", tmp_path / "nothing.blend")
     before = len(libraries)
@@ -179,10 +144,6 @@ def test_without_a_library_none_is_listed(libraries, monkeypatch, tmp_path):
     assert not asset_library.is_there()
 
 
-# Previews -------------------------------------------------------------------------------------------------------------
-
-
-@quick
 def test_a_preview_is_a_small_picture_of_what_its_preset_is_now():
     previews = module("previews")
     for key in preset_names():
@@ -194,7 +155,6 @@ def test_a_preview_is_a_small_picture_of_what_its_preset_is_now():
     assert not [path.name for path in picture_path("any").parent.iterdir() if path.name not in known]
 
 
-@quick
 def test_every_preset_suits_a_scene_and_another_value_asks_for_another_preview():
     previews = module("previews")
     scenes = sys.modules["preview_scenes"]
@@ -207,7 +167,6 @@ def test_every_preset_suits_a_scene_and_another_value_asks_for_another_preview()
     assert previews.digest(type(water)(**(vars(water) | {"parameters": changed}))) != digest
 
 
-@quick
 def test_a_brilliant_is_a_closed_body_of_58_facets_and_a_girdle():
     module("previews")
     new_scene()
@@ -216,7 +175,6 @@ def test_a_brilliant_is_a_closed_body_of_58_facets_and_a_girdle():
     assert len(mesh.polygons) - len(girdle) == 57  # without a culet
 
 
-@quick
 def test_a_medium_that_is_dragged_onto_an_object_has_its_colour_at_that_objects_thickness(library, registered):
     """Without a window Blender runs no timers: the test calls what the timer would."""
     file = next(library.glob("*.blend"))
@@ -239,7 +197,6 @@ def test_a_medium_that_is_dragged_onto_an_object_has_its_colour_at_that_objects_
     assert wine.inputs["Transmittance Depth"].default_value == pytest.approx(0.07)
 
 
-@quick
 def test_what_an_artists_own_objects_bring_keeps_its_depth(tmp_path, registered):
     bpy.ops.mesh.primitive_cube_add(size=3.0)
     bpy.context.object.name = "Brought"

@@ -1,54 +1,21 @@
 """The command line, as a process of its own."""
 
-import subprocess
 import sys
-from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
-from scenes import add_camera, add_sphere, new_scene, oiio, read_picture, set_striped_world
+from command_line import assert_one_line, run, save_scene
+from scenes import new_scene, oiio, read_picture
 
 import nested_dielectric as nd
 from nested_dielectric import cli
-from nested_dielectric.model.spectra import spectral_table
-
-
-def run(*arguments: object) -> subprocess.CompletedProcess:
-    return subprocess.run(
-        [sys.executable, "-m", "nested_dielectric", *map(str, arguments)], capture_output=True, text=True, check=False
-    )
-
-
-def assert_one_line(error: str, *words: str) -> None:
-    lines = error.strip().splitlines()
-    assert len(lines) == 1 and lines[0].startswith("nested-dielectric: error: ")
-    assert all(word in lines[0] for word in words), lines[0]
+from nested_dielectric.model.spectral_tables import spectral_table
 
 
 @pytest.fixture(scope="module")
-def file(tmp_path_factory) -> Path:
-    """A saved scene that still renders with EEVEE."""
-    new_scene(24)
-    set_striped_world()
-    add_camera((0, -5, 0.3), (0, 0, 0), angle=28)
-    add_sphere("Glass", 1.0, nd.new_material("Glass", preset="glass"))
-    bpy.context.scene.render.engine = "BLENDER_EEVEE"
-    path = tmp_path_factory.mktemp("file") / "scene.blend"
-    bpy.ops.wm.save_as_mainfile(filepath=str(path))
-    return path
-
-
-def test_render_prepares_in_memory_shows_progress_and_leaves_the_file(file, tmp_path):
-    before = file.read_bytes()
-    done = run("render", file, "-o", tmp_path / "new" / "picture.png", "--samples", 20, "--frame", 3)
-    assert done.returncode == 0, done.stderr
-    assert "Render Engine: EEVEE -> Cycles" in done.stdout
-    assert done.stdout.strip().endswith(str(tmp_path / "new" / "picture.png"))
-    assert "of 20 samples" in done.stderr
-    picture = read_picture(tmp_path / "new" / "picture.png")
-    assert picture.shape[:2] == (24, 24) and picture.std() > 0.05
-    assert file.read_bytes() == before
+def file(tmp_path_factory):
+    return save_scene(tmp_path_factory.mktemp("file"))
 
 
 def test_prepare_saves_the_file_and_a_second_time_has_nothing_to_do(file):
@@ -120,18 +87,18 @@ def test_bake_writes_the_table_what_it_is_and_a_plot(tmp_path):
 
 
 def test_bake_takes_the_working_space_of_the_open_file_and_a_csv_file(tmp_path, capsys):
-    (tmp_path / "lamp.csv").write_text("nm,power\n400,1\n700,3\n")
+    (tmp_path / "light.csv").write_text("nm,power\n400,1\n700,3\n")
     new_scene()
     bpy.ops.wm.set_working_color_space(convert_colors=False, working_space="ACEScg")
     try:
         capsys.readouterr()
-        arguments = ["bake", "--distribution", str(tmp_path / "lamp.csv"), "-o", str(tmp_path / "table.exr")]
+        arguments = ["bake", "--distribution", str(tmp_path / "light.csv"), "-o", str(tmp_path / "table.exr")]
         assert cli.main(arguments) == 0
         assert "ACESCG" in capsys.readouterr().out
     finally:
         new_scene()
     table = oiio.ImageBuf(str(tmp_path / "table.exr")).get_pixels(oiio.FLOAT)
-    assert np.array_equal(table[0], spectral_table(tmp_path / "lamp.csv", "ACESCG"))
+    assert np.array_equal(table[0], spectral_table(tmp_path / "light.csv", "ACESCG"))
 
 
 @pytest.mark.parametrize(

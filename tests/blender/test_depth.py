@@ -11,12 +11,11 @@ from scenes import add, add_box, add_mesh, add_sphere, new_scene
 import nested_dielectric as nd
 from nested_dielectric.geometry import meshes
 from nested_dielectric.model import presets
-from nested_dielectric.model.parameters import ParameterError
+from nested_dielectric.model.parameter import ParameterError
 from nested_dielectric.model.presets import Preset
 from nested_dielectric.scene import materials, preset_materials, shapes
-from nested_dielectric.scene.materials import KEY_PROPERTY, measured_depth
-
-pytestmark = pytest.mark.quick
+from nested_dielectric.scene.new_materials import KEY_PROPERTY
+from nested_dielectric.scene.preset_values import measured_depth
 
 WINE = Preset(
     "wine", "Wine", "Drinks", ("red",), "Red.", "Invented.",
@@ -33,8 +32,8 @@ def wine(monkeypatch):
     def load(key):
         return WINE if key == "wine" else known(key)
 
-    for module in ("materials", "preset_materials"):
-        monkeypatch.setattr(f"nested_dielectric.{module}.load_preset", load)
+    for module in ("new_materials", "preset_materials"):
+        monkeypatch.setattr(f"nested_dielectric.scene.{module}.load_preset", load)
 
 
 def depth(material) -> float:
@@ -190,7 +189,7 @@ def test_a_depth_that_something_else_sets_is_left_to_it(change):
     else:
         value = tree.nodes.new("ShaderNodeMath")
         tree.links.new(value.outputs[0], socket)
-    with pytest.raises(ParameterError, match="'Wine'.*Transmittance Depth"):
+    with pytest.raises(ParameterError, match=r"'Wine'.*Transmittance Depth"):
         preset_materials.fit_depth(material, 2.0)
 
 
@@ -215,7 +214,7 @@ def test_a_preset_has_its_colour_in_every_working_space():
     # Blender adapts the white as Bradford does, to a few digits.
     assert colours[1] == pytest.approx(colours[0], abs=2e-3)
     assert colours[1] != pytest.approx(presets.load_preset("wine_rose").parameters["transmittance"], abs=0.02)
-    assert materials.is_preset(there, presets.load_preset("wine_rose"))
+    assert preset_materials.is_preset(there, presets.load_preset("wine_rose"))
     kept = preset_materials.preset_from(there, "Mine", "Drinks", (), "")
     expected = presets.load_preset("wine_rose").parameters["transmittance"]
     assert kept.parameters["transmittance"] == pytest.approx(expected, abs=1e-5)

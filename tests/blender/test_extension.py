@@ -30,7 +30,7 @@ bpy.ops.nested_dielectric.assign_preset(preset="water")
 cube = bpy.data.objects["Cube"]
 assert nd.get_priority(cube) == 30, nd.get_priority(cube)
 assert nd.new_material("Diamond", ior=2.417).node_tree.nodes["Nested Dielectric"].inputs["IOR"].default_value > 2.4
-table = nd.addon.model.spectra.spectral_table("LED", "ACESCG")
+table = nd.addon.model.spectral_tables.spectral_table("LED", "ACESCG")
 assert abs(table[:, :3].mean() - 1.0) < 1e-6, table
 import colour
 assert colour.__file__.startswith(bpy.utils.user_resource("EXTENSIONS")), colour.__file__
@@ -84,7 +84,7 @@ def test_the_zip_holds_the_extension_and_nothing_else(archive):
     sources = {
         path.relative_to(ROOT).as_posix()
         for folder, pattern in (
-            ("addon", "*.py"),
+            ("addon", "**/*.py"),
             ("osl", "*"),
             ("presets", "*.toml"),
             ("presets/previews", "*.jpg"),

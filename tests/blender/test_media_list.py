@@ -7,9 +7,7 @@ from scenes import add, add_sphere, new_scene
 import nested_dielectric as nd
 from nested_dielectric.preparation.checks import find_problems
 from nested_dielectric.scene import materials
-from nested_dielectric.ui.panels.media_list import listed_media
-
-pytestmark = pytest.mark.quick
+from nested_dielectric.ui.media_list import listed_media
 
 
 @pytest.fixture

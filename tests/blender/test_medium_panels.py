@@ -8,15 +8,19 @@ import pytest
 from ui import add_cube, add_dispersive, texts
 
 import nested_dielectric as nd
-from nested_dielectric.model import parameters, spectra
+from nested_dielectric.model import parameters, spectral_tables
+from nested_dielectric.model.colour_science import SpectrumError
+from nested_dielectric.model.effects import has_effect
 from nested_dielectric.model.parameters import BY_KEYWORD
-from nested_dielectric.scene import materials
+from nested_dielectric.nodes.spectral_images import digest
+from nested_dielectric.scene import material_spectra, materials
+from nested_dielectric.ui import pictures
 from nested_dielectric.ui.panels import dispersion_panels, medium_panels
 
 PANELS = {cls.bl_idname.removeprefix("NESTED_DIELECTRIC_PT_"): cls for cls in medium_panels.CLASSES}
 DISPERSION, SPECTRUM = PANELS["sidebar_dispersion"], PANELS["sidebar_spectrum"]
 
-pytestmark = [pytest.mark.quick, pytest.mark.usefixtures("registered")]
+pytestmark = pytest.mark.usefixtures("registered")
 
 
 def test_a_button_sets_the_dispersion_model_and_undo_takes_it_back():
@@ -40,11 +44,11 @@ def test_ior_returns_to_that_of_the_sellmeier_coefficients():
     assert bpy.ops.nested_dielectric.sellmeier_ior() == {"FINISHED"}
     assert node.inputs["IOR"].default_value == pytest.approx(1.5168, abs=1e-5)
     node.inputs["Sellmeier B"].default_value = (-10.0, 0.0, 0.0)
-    with pytest.raises(RuntimeError, match="no real index at 587.6 nm; correct Sellmeier B and C"):
+    with pytest.raises(RuntimeError, match=r"no real index at 587\.6 nm; correct Sellmeier B and C"):
         bpy.ops.nested_dielectric.sellmeier_ior()
     node.inputs["Sellmeier B"].default_value = (0.0, 0.0, 1e4)
     node.inputs["Sellmeier C"].default_value = (0.0, 0.0, 0.0)
-    with pytest.raises(RuntimeError, match="ior=100.0.* is outside 0.01 to 100"):
+    with pytest.raises(RuntimeError, match=r"ior=100\.0.* is outside 0\.01 to 100"):
         bpy.ops.nested_dielectric.sellmeier_ior()
     assert node.inputs["IOR"].default_value == pytest.approx(1.5168, abs=1e-5)
     bpy.ops.nested_dielectric.dispersion_model(model="ABBE")
@@ -54,8 +58,8 @@ def test_ior_returns_to_that_of_the_sellmeier_coefficients():
 
 def test_a_spectrum_is_a_word_an_illuminant_or_a_file_and_what_is_not_given_stays(tmp_path):
     material, _ = add_dispersive(spectral_saturation=0.7, clamp_negative=False)
-    before = materials.spectrum_settings(material)
-    file = tmp_path / "lamp.csv"
+    before = material_spectra.spectrum_settings(material)
+    file = tmp_path / "light.csv"
     file.write_text("400, 1\n700, 2\n")
     for keywords, distribution in (
         ({"distribution": "SUNSET"}, "SUNSET"),
@@ -66,9 +70,9 @@ def test_a_spectrum_is_a_word_an_illuminant_or_a_file_and_what_is_not_given_stay
         ({}, str(file)),
     ):
         assert bpy.ops.nested_dielectric.spectrum(**keywords) == {"FINISHED"}
-        assert materials.spectrum_settings(material) == before | {"spectral_distribution": distribution}
-        expected = spectra.spectral_table(distribution, "REC709", 0.7, False)
-        np.testing.assert_array_equal(materials.material_table(material), expected)
+        assert material_spectra.spectrum_settings(material) == before | {"spectral_distribution": distribution}
+        expected = spectral_tables.spectral_table(distribution, "REC709", 0.7, False)
+        np.testing.assert_array_equal(material_spectra.material_table(material), expected)
 
 
 def test_the_dialog_of_a_spectrum_starts_at_the_material_in_any_case_of_its_word(tmp_path):
@@ -77,24 +81,24 @@ def test_the_dialog_of_a_spectrum_starts_at_the_material_in_any_case_of_its_word
     # Without a window Blender presses OK at once.
     bpy.ops.nested_dielectric.spectrum("INVOKE_DEFAULT", gamut="REC2020")
     changed = {"spectral_distribution": "FL11", "spectral_gamut": "REC2020"}
-    assert materials.spectrum_settings(material) == settings | changed
+    assert material_spectra.spectrum_settings(material) == settings | changed
 
 
 def test_a_wrong_spectrum_leaves_everything_as_it_was(tmp_path):
     material, node = add_dispersive(spectral_distribution="LED")
-    file = tmp_path / "lamp.csv"
+    file = tmp_path / "light.csv"
     file.write_text("400, 1\n700, bright\n")
     sockets = [socket.default_value for socket in node.inputs if socket.type in ("INT", "VALUE")]
-    settings, table = materials.spectrum_settings(material), materials.material_table(material)
+    settings, table = material_spectra.spectrum_settings(material), material_spectra.material_table(material)
     for keywords, message in (
-        ({"filepath": str(file)}, "lamp.csv, line 2: '700, bright': two finite numbers"),
+        ({"filepath": str(file)}, "light.csv, line 2: '700, bright': two finite numbers"),
         ({"filepath": str(tmp_path / "none.csv"), "gamut": "ACESCG"}, "no such word, CIE illuminant or file"),
         ({"distribution": "FILE"}, "a word or the path of a file is needed"),
     ):
         with pytest.raises(RuntimeError, match=message):
             bpy.ops.nested_dielectric.spectrum(**keywords)
-        assert materials.spectrum_settings(material) == settings
-        np.testing.assert_array_equal(materials.material_table(material), table)
+        assert material_spectra.spectrum_settings(material) == settings
+        np.testing.assert_array_equal(material_spectra.material_table(material), table)
     assert sockets == [socket.default_value for socket in node.inputs if socket.type in ("INT", "VALUE")]
     assert len(bpy.data.images) == 1
 
@@ -177,7 +181,7 @@ def test_the_panel_says_what_to_do_where_a_model_has_no_index(draw, keywords, er
 
 
 def test_the_panel_offers_the_index_of_the_sellmeier_coefficients_where_ior_is_another(draw):
-    _, node = add_dispersive(ior=1.6)
+    _, _node = add_dispersive(ior=1.6)
     labels, _, buttons = texts(draw(PANELS["material_dispersion"]))
     assert "IOR is not the coefficients' own 1.51680" in labels and "n_d 1.60000" in labels
     assert "Set IOR to 1.51680" in buttons
@@ -204,15 +208,17 @@ def test_the_panel_shows_a_spectrum_and_its_picture_even_without_colour_science_
     draw, monkeypatch, tmp_path
 ):
     def fail():
-        raise spectra.SpectrumError("spectra need colour-science")
+        raise SpectrumError("spectra need colour-science")
 
-    file = tmp_path / "lamp.csv"
+    file = tmp_path / "light.csv"
     file.write_text("400, 1\n700, 2\n")
-    material, node = add_dispersive(spectral_distribution=str(file), spectral_gamut="PROPHOTO", spectral_saturation=0.5)
+    _material, node = add_dispersive(
+        spectral_distribution=str(file), spectral_gamut="PROPHOTO", spectral_saturation=0.5
+    )
     file.unlink()
-    monkeypatch.setattr(spectra, "_colour", fail)
+    monkeypatch.setattr("nested_dielectric.model.distributions.colour_science", fail)
     drawn = draw(SPECTRUM)
-    text = "Distribution lamp.csv Gamut ProPhoto RGB Saturation 0.5 Negative clamped"
+    text = "Distribution light.csv Gamut ProPhoto RGB Saturation 0.5 Negative clamped"
     assert texts(drawn)[0] == text
     assert [keywords["scale"] for name, _, keywords in drawn if name == "template_icon"] == [6.0]
     bpy.data.images.remove(node.node_tree.nodes["Spectral Tables"].image)
@@ -222,9 +228,11 @@ def test_the_panel_shows_a_spectrum_and_its_picture_even_without_colour_science_
 
 
 def test_a_picture_is_drawn_once_for_every_table_in_encoded_colours(monkeypatch):
-    tables = [spectra.spectral_table("LED", saturation=saturation) for saturation in (0.0, 0.5, 1.0)]
+    tables = [spectral_tables.spectral_table("LED", saturation=saturation) for saturation in (0.0, 0.5, 1.0)]
     drawn = []
-    monkeypatch.setattr(dispersion_panels, "preview", lambda *arguments: drawn.append(1) or spectra.preview(*arguments))
+    monkeypatch.setattr(
+        dispersion_panels, "preview", lambda *arguments: drawn.append(1) or spectral_tables.preview(*arguments)
+    )
     monkeypatch.setattr(dispersion_panels, "MAX_PICTURES", 2)
     for table in tables[:2] * 2:
         dispersion_panels.picture(table)
@@ -232,10 +240,8 @@ def test_a_picture_is_drawn_once_for_every_table_in_encoded_colours(monkeypatch)
     dispersion_panels.picture(tables[2])
     dispersion_panels.picture(tables[2].copy())
     assert len(drawn) == 3
-    assert len(dispersion_panels._pictures) == 2
-    pixels = np.array(dispersion_panels._pictures[dispersion_panels.digest(tables[2])].image_pixels_float).reshape(
-        256, 256, 4
-    )
+    assert len(pictures._pictures) == 2
+    pixels = np.array(pictures._pictures[f"spectrum {digest(tables[2])}"].image_pixels_float).reshape(256, 256, 4)
     # The ground, 0.01, and the top of the curve, 1, in 8 bit.
     np.testing.assert_allclose(pixels[-1, 0], (0.0998, 0.0998, 0.0998, 1.0), atol=0.5 / 255)
     assert pixels[0, :, :3].max() == 1.0
@@ -254,7 +260,7 @@ def test_panel_and_node_show_first_what_artists_change_first(draw):
 
 
 def test_every_parameter_stands_in_one_panel(draw):
-    material, node = add_dispersive()
+    _material, _node = add_dispersive()
     shown = []
     for name, panel in PANELS.items():
         if name.startswith("sidebar"):
@@ -314,9 +320,9 @@ def test_what_does_not_show_is_greyed_out(keywords, idle):
     material = nd.new_material("Glass", **keywords)
     values = medium_panels.known_values(bpy.context.scene, material)
     for keyword in idle:
-        assert not parameters.has_effect(BY_KEYWORD[keyword], values), keyword
+        assert not has_effect(BY_KEYWORD[keyword], values), keyword
     for keyword in ("ior", "priority", "roughness", "shadow_mode", *keywords):
-        assert parameters.has_effect(BY_KEYWORD[keyword], values), keyword
+        assert has_effect(BY_KEYWORD[keyword], values), keyword
 
 
 def test_a_panel_greys_out_what_does_not_show(draw):
@@ -334,7 +340,7 @@ def test_what_is_linked_keyframed_or_carried_by_lobes_may_show(draw):
     scene = bpy.context.scene
 
     def shows(keyword):
-        return parameters.has_effect(BY_KEYWORD[keyword], medium_panels.known_values(scene, material))
+        return has_effect(BY_KEYWORD[keyword], medium_panels.known_values(scene, material))
 
     assert not shows("thin_film_ior") and not shows("distribution") and not shows("direct_refraction")
     node.inputs["Thin Film Thickness"].keyframe_insert("default_value")
@@ -351,7 +357,7 @@ def test_what_is_linked_keyframed_or_carried_by_lobes_may_show(draw):
 
 def test_a_medium_says_after_which_length_half_of_its_light_is_left(draw):
     scene = bpy.context.scene
-    material, node = add_dispersive(transmittance=(0.25, 0.25, 0.25), transmittance_depth=0.5)
+    _material, node = add_dispersive(transmittance=(0.25, 0.25, 0.25), transmittance_depth=0.5)
     assert materials.half_distance(node) == pytest.approx(0.25, rel=1e-6)
     assert "Half of the light is left after 25 cm" in texts(draw(PANELS["sidebar_medium"]))[0]
     scene.unit_settings.scale_length = 0.01

@@ -1,31 +1,21 @@
 """A nested dielectric is found wherever an artist puts its node, or named with the remedy."""
 
 import bpy
-import numpy as np
 import pytest
-from scenes import add_camera, add_sphere, new_scene, render, set_striped_world
+from places_of_nodes import GROUP, duplicated, grouped, output_of, plug, renamed, twice_grouped
+from scenes import add_sphere, new_scene
 
 import nested_dielectric as nd
 from nested_dielectric import registration
 from nested_dielectric.model.parameters import BY_KEYWORD
-from nested_dielectric.nodes.trees import dielectric_places, socket_value
+from nested_dielectric.nodes.places import dielectric_places
 from nested_dielectric.preparation import live
 from nested_dielectric.preparation.checks import find_problems
 from nested_dielectric.scene.materials import dielectric_node, get_parameter, medium_material, parameter_socket
 
-GROUP = "Nested Dielectric"
-
 
 def problems() -> list[str]:
     return [str(problem) for problem in find_problems(bpy.context.scene)]
-
-
-def output_of(material: bpy.types.Material) -> bpy.types.Node:
-    return material.node_tree.get_output_node("CYCLES")
-
-
-def plug(material: bpy.types.Material, socket: bpy.types.NodeSocket) -> None:
-    material.node_tree.links.new(socket, output_of(material).inputs["Surface"])
 
 
 def through_reroute(material) -> None:
@@ -68,64 +58,6 @@ def cut(material) -> None:
     output_of(material).inputs["Surface"].links[0].is_muted = True
 
 
-def renamed(material) -> None:
-    material.node_tree.nodes[GROUP].name = "Glass Node"
-
-
-def duplicated(material) -> None:
-    """The copy is plugged in; the first node is not, and has other values."""
-    tree = material.node_tree
-    old = tree.nodes[GROUP]
-    copy = tree.nodes.new("ShaderNodeGroup")
-    copy.node_tree = old.node_tree
-    copy_values(old, copy)
-    tree.links.new(copy.outputs["Volume"], output_of(material).inputs["Volume"])
-    plug(material, copy.outputs["Surface"])
-    old.inputs["IOR"].default_value, old.inputs["Priority"].default_value = 2.5, 9
-
-
-def copy_values(old: bpy.types.Node, new: bpy.types.Node) -> None:
-    for source, target in zip(old.inputs, new.inputs):
-        if hasattr(source, "default_value"):
-            target.default_value = socket_value(source)
-
-
-def grouped(material, name: str = GROUP, exposed=("IOR",)) -> None:
-    """The node is put into a group (Ctrl+G), some of whose values are the group's own sockets."""
-    tree = material.node_tree
-    old = tree.nodes[name]
-    own = bpy.data.node_groups.new("My Glass", "ShaderNodeTree")
-    inside = own.nodes.new("ShaderNodeGroup")
-    inside.node_tree, inside.name = old.node_tree, old.name
-    copy_values(old, inside)
-    source, sink = own.nodes.new("NodeGroupInput"), own.nodes.new("NodeGroupOutput")
-    outputs = [socket.name for socket in old.outputs if socket.is_linked]
-    for output in outputs:
-        own.interface.new_socket(output, in_out="OUTPUT", socket_type="NodeSocketShader")
-        own.links.new(inside.outputs[output], sink.inputs[output])
-    for socket in exposed:
-        kind = old.inputs[socket].bl_idname
-        plain = kind.removesuffix("Factor").removesuffix("Distance")
-        own.interface.new_socket(socket, in_out="INPUT", socket_type=plain)
-        reroute = own.nodes.new("NodeReroute")
-        own.links.new(source.outputs[socket], reroute.inputs[0])
-        own.links.new(reroute.outputs[0], inside.inputs[socket])
-    group = tree.nodes.new("ShaderNodeGroup")
-    group.node_tree, group.name = own, "My Glass"
-    for socket in exposed:
-        group.inputs[socket].default_value = old.inputs[socket].default_value
-        inside.inputs[socket].default_value = 3.0  # nobody's value
-    for output in outputs:
-        for link in list(old.outputs[output].links):
-            tree.links.new(group.outputs[output], link.to_socket)
-    tree.nodes.remove(old)
-
-
-def twice_grouped(material) -> None:
-    grouped(material)
-    grouped(material, "My Glass")
-
-
 def grouped_and_dirty(material) -> None:
     through_mix(material, 0.0)
     grouped(material, exposed=())
@@ -134,7 +66,6 @@ def grouped_and_dirty(material) -> None:
 WAYS = (through_reroute, through_mix, through_muted_mix, renamed, duplicated, grouped, twice_grouped, grouped_and_dirty)
 
 
-@pytest.mark.quick
 def test_a_node_that_reaches_the_output_is_found_however():
     new_scene()
     tint = {"transmittance": (0.9, 0.5, 0.4), "transmittance_depth": 0.25}
@@ -164,7 +95,6 @@ def test_a_node_that_reaches_the_output_is_found_however():
         assert nd.get_priority(ball) == 6
 
 
-@pytest.mark.quick
 def test_a_node_that_does_not_reach_the_output_makes_no_medium_and_is_named(capsys):
     new_scene()
     for way in (hidden_by_mix, muted, unplugged, cut):
@@ -180,7 +110,6 @@ def test_a_node_that_does_not_reach_the_output_makes_no_medium_and_is_named(caps
             nd.assign(ball, material)
 
 
-@pytest.mark.quick
 def test_assigning_a_material_makes_its_node_readable():
     new_scene()
     for way in (renamed, duplicated, grouped):
@@ -191,7 +120,6 @@ def test_assigning_a_material_makes_its_node_readable():
         assert nd.get_priority(ball) == 4
 
 
-@pytest.mark.quick
 def test_two_nested_dielectrics_in_one_material_are_named():
     new_scene()
     material = nd.new_material("Water", ior=1.33)
@@ -206,7 +134,6 @@ def test_two_nested_dielectrics_in_one_material_are_named():
     assert "2 nested dielectrics plugged into material 'Water'" in str(found)
 
 
-@pytest.mark.quick
 def test_values_inside_a_group_that_neighbours_cannot_follow_are_named():
     new_scene()
     material = nd.new_material("Water", ior=1.33)
@@ -226,7 +153,6 @@ def test_values_inside_a_group_that_neighbours_cannot_follow_are_named():
     assert "a link into 'Abbe'" in found
 
 
-@pytest.mark.quick
 def test_a_muted_link_into_a_socket_is_none():
     new_scene()
     material = nd.new_material("Water", ior=1.33)
@@ -250,7 +176,6 @@ def added_by_hand(name: str, **keywords) -> bpy.types.Material:
     return material
 
 
-@pytest.mark.quick
 def test_a_node_added_by_hand_is_named_until_prepare_completes_it():
     new_scene()
     material = added_by_hand("Wine", Transmittance=(0.6, 0.1, 0.2, 1.0))
@@ -268,7 +193,6 @@ def test_a_node_added_by_hand_is_named_until_prepare_completes_it():
     assert nd.prepare(bpy.context.scene).changes == ()
 
 
-@pytest.mark.quick
 def test_a_group_that_gives_its_surface_alone_is_completed_beside_it():
     new_scene()
     material = nd.new_material("Wine", transmittance=(0.6, 0.1, 0.2))
@@ -287,7 +211,6 @@ def test_a_group_that_gives_its_surface_alone_is_completed_beside_it():
     assert dielectric_node(material) == node
 
 
-@pytest.mark.quick
 def test_what_an_artist_has_plugged_in_stays_and_what_is_missing_is_named():
     new_scene()
     material = nd.new_material("Wine", transmittance=(0.6, 0.1, 0.2))
@@ -310,7 +233,6 @@ def test_what_an_artist_has_plugged_in_stays_and_what_is_missing_is_named():
     assert problems() == []
 
 
-@pytest.mark.quick
 def test_a_dispersing_node_added_by_hand_gets_its_spectral_table():
     new_scene()
     material = added_by_hand("Prism", Disperse=True)
@@ -323,30 +245,6 @@ def test_a_dispersing_node_added_by_hand_gets_its_spectral_table():
     assert means == others and any(means)
 
 
-def test_media_whose_nodes_are_grouped_renamed_or_copied_render_as_plain_ones():
-    """Each reads the other's index, on both sides of a common surface."""
-    pictures = []
-    for ways in ((), (twice_grouped, duplicated), (renamed, grouped)):
-        new_scene(24)
-        set_striped_world()
-        tint = {"transmittance": (0.5, 0.7, 0.9), "transmittance_depth": 0.5}
-        media = nd.new_material("Glass", ior=1.5, priority=1, **tint), nd.new_material("Water", ior=1.33, priority=2)
-        for material, way in zip(media, ways):
-            way(material)
-        glass, water = media
-        add_sphere("Outer", 1.0, water, segments=32)
-        add_sphere("Inner", 0.6, glass, None, (0.5, 0, 0), segments=32)
-        add_camera((0.1, -6, 0.3), (0.05, 0, 0), angle=24)
-        assert nd.prepare(bpy.context.scene).problems == ()
-        pictures.append(render(8))
-    for picture in pictures[1:]:
-        # The same rays; what surrounds a surface is asked here and known there, which rounding tells apart at few samples, and
-        # the tint is the surface's here and the volume's there, so that Cycles draws some lobes otherwise.
-        assert np.mean(np.abs(picture - pictures[0]).max(axis=-1) > 1e-3) < 0.05
-        assert picture.mean() == pytest.approx(pictures[0].mean(), rel=1e-3)
-
-
-@pytest.mark.quick
 def test_what_changes_in_nodes_of_a_prepared_scene_is_read_at_once():
     new_scene()
     nd.register()

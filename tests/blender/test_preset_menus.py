@@ -1,24 +1,20 @@
-"""Presets in Blender's window: menus, what is said of an edited material, and presets of the user's own."""
+"""Menus and pictures of presets."""
 
 from types import SimpleNamespace
 
 import bpy
 import numpy as np
 import pytest
+from preset_menus import NODE, add_active_ball, call, draw_popover, save_wine
 from scenes import add_sphere, new_scene
 
 import nested_dielectric as nd
-from nested_dielectric import cli, registration
+from nested_dielectric import registration
 from nested_dielectric.model import presets
-from nested_dielectric.model.parameters import ParameterError
-from nested_dielectric.scene import materials, preset_library, preset_materials
-from nested_dielectric.ui import object_menu, preferences
-from nested_dielectric.ui.presets import preset_menus, preset_operators, preset_pictures
-
-pytestmark = pytest.mark.quick
-
-NODE = "Nested Dielectric"
-SAVE, RENAME, DELETE = (f"{word}_preset" for word in ("save", "rename", "delete"))
+from nested_dielectric.scene import new_materials, preset_library, preset_materials
+from nested_dielectric.ui import pictures, preferences
+from nested_dielectric.ui.panels import object_menu
+from nested_dielectric.ui.presets import own_preset_operators, preset_menus, preset_operators, preset_pictures
 
 
 @pytest.fixture(autouse=True)
@@ -36,21 +32,6 @@ def folder(monkeypatch, tmp_path):
 
 
 @pytest.fixture
-def ball():
-    obj = add_sphere("Ball", 0.5, segments=16)
-    bpy.context.view_layer.objects.active = obj
-    obj.select_set(True)
-    return obj
-
-
-def call(operator: str, /, *arguments, **keywords):
-    return getattr(bpy.ops.nested_dielectric, operator)(*arguments, **keywords)
-
-
-# An edited material ---------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
 def edited(ball):
     """A ball of water that was made rough."""
     material = nd.assign(ball, "water")
@@ -58,10 +39,20 @@ def edited(ball):
     return material
 
 
+@pytest.fixture
+def ball():
+    return add_active_ball()
+
+
+@pytest.fixture
+def draw():
+    return draw_popover
+
+
 def test_a_preset_whose_material_was_edited_gives_a_clean_copy_and_names_both(edited, ball):
     said = run_assign(preset="water")
     assert ball.active_material != edited
-    assert materials.is_preset(ball.active_material, presets.load_preset("water"))
+    assert preset_materials.is_preset(ball.active_material, presets.load_preset("water"))
     assert "'Water' was edited, so 'Water.001'" in said[-1]
     assert "Use Edited" in said[-1]
 
@@ -125,7 +116,7 @@ def test_the_depth_is_that_of_the_object_or_as_measured_as_the_user_says(ball, f
 def test_fitting_says_why_it_cannot(ball):
     assert not bpy.ops.nested_dielectric.fit_depth.poll()
     material = nd.assign(ball, "water")
-    del material[materials.KEY_PROPERTY]
+    del material[new_materials.KEY_PROPERTY]
     with pytest.raises(RuntimeError, match="'Water' knows no preset"):
         call("fit_depth", depth="MEASURED")
     ball.data.clear_geometry()
@@ -135,215 +126,6 @@ def test_fitting_says_why_it_cannot(ball):
 
 def depth(obj) -> float:
     return obj.active_material.node_tree.nodes[NODE].inputs["Transmittance Depth"].default_value
-
-
-# Presets of the user's ------------------------------------------------------------------------------------------------
-
-
-def save_wine(folder):
-    wine = presets.Preset(
-        "my_wine", "My Wine", "Drinks", ("red", "homemade"), "Red.", "Invented.",
-        {"ior": 1.34, "transmittance": [0.6, 0.1, 0.15], "transmittance_depth": 0.05, "priority": 20},
-    )  # fmt: skip
-    presets.save_preset(wine, folder)
-    return wine
-
-
-def test_a_saved_medium_comes_back_as_it_was(ball, folder):
-    bpy.context.scene.unit_settings.scale_length = 0.01
-    made = nd.new_material(
-        'Blue "Glass"',
-        ior=1.62,
-        transmittance=(0.2, 0.4, 0.9),
-        transmittance_depth=7.0,
-        roughness=0.05,
-        disperse=True,
-        abbe=33.3,
-        shadow_mode="BLACK",
-        internal_reflections=False,
-        spectral_distribution="LED",
-        priority=7,
-    )
-    nd.assign(ball, made)
-    call(SAVE, name='Blue "Glass" é', group="Glass", tags="cobalt,  blue , cobalt", text="As blue as\nit gets.")
-    (path,) = folder.iterdir()
-    assert path.name == "blue_glass_é.toml"
-    preset = preset_library.load_preset("blue_glass_é")
-    assert (preset.name, preset.group, preset.tags) == ('Blue "Glass" é', "Glass", ("cobalt", "blue"))
-    assert preset.depth == pytest.approx(0.07)
-    again = nd.new_material("Again", preset="blue_glass_é")
-    assert materials.is_preset(again, preset) and materials.is_preset(made, preset)
-    assert again.node_tree.nodes[NODE].inputs["Transmittance Depth"].default_value == pytest.approx(7.0)
-    assert nd.preset_names() == tuple(sorted(nd.preset_names())) and "blue_glass_é" in nd.preset_names()
-
-
-@pytest.mark.parametrize("space", ["Linear Rec.709", "ACEScg"])
-def test_every_preset_survives_being_saved(ball, folder, space):
-    bpy.ops.wm.set_working_color_space(convert_colors=False, working_space=space)
-    for key in presets.preset_names():
-        material = nd.new_material("Any", preset=key)
-        saved = preset_materials.preset_from(material, f"My {key}", "Glass", (), "")
-        presets.save_preset(saved, folder)
-        assert materials.is_preset(material, presets.load_preset(saved.key, folder)), key
-    bpy.ops.wm.set_working_color_space(convert_colors=False, working_space="Linear Rec.709")
-
-
-@pytest.mark.parametrize(
-    "name, key",
-    [("Red Wine", "red_wine"), ("../../etc/passwd", "etc_passwd"), ("C:\\NUL", "c_nul"), ("nul", "nul_preset"),
-     ("赤ワイン", "赤ワイン"), ("  a.b  ", "a_b"), ("x" * 300, "x" * presets.LONGEST_KEY)],
-)  # fmt: skip
-def test_no_name_leads_out_of_the_folder(name, key):
-    assert presets.key_of(name) == key
-
-
-def test_names_that_are_taken_or_none_are_refused_and_nothing_is_written(ball, folder):
-    nd.assign(ball, "ice")
-    for name, words in (("Water", "'Water' is a preset of"), ("water!", "extension's"), ("BK7 glass", "extension's")):
-        with pytest.raises(RuntimeError, match=words):
-            call(SAVE, name=name)
-    with pytest.raises(RuntimeError, match="a letter"):
-        call(SAVE, name="?")
-    assert not folder.exists()
-
-
-def test_the_dialog_begins_with_a_free_name_and_what_the_preset_says_of_itself(ball, monkeypatch):
-    nd.assign(ball, "diamond")
-    operator = SimpleNamespace(name="", group="", tags="", text="")
-    opened = []
-    manager = SimpleNamespace(invoke_props_dialog=lambda *_, **keywords: opened.append(keywords))
-    context = SimpleNamespace(object=ball, window_manager=manager)
-    preset_operators.SavePreset.invoke(operator, context, None)
-    assert (operator.name, operator.group) == ("My Diamond", "Gems and Crystals")
-    assert "jewel" in operator.tags and opened
-
-
-def test_what_other_nodes_make_is_named_when_a_preset_is_saved(ball, capfd):
-    material = nd.new_material("Coated")
-    nd.assign(ball, material)
-    tree = material.node_tree
-    value = tree.nodes.new("ShaderNodeMath")
-    tree.links.new(value.outputs[0], tree.nodes[NODE].inputs["Roughness"])
-    call(SAVE, name="Coated")
-    assert "'Coated': other nodes make Roughness" in "".join(capfd.readouterr())
-
-
-def test_a_file_of_the_users_that_is_called_as_a_built_in_preset_does_not_take_its_place(folder):
-    (folder / "x").mkdir(parents=True)
-    presets.save_preset(presets.Preset("water", "Wine", "Drinks", (), "", "", {"ior": 2.0}), folder)
-    found = preset_library.catalogue()
-    assert found.presets["water"].name == "Water" and not found.own
-    assert "water.toml" in found.problems[0] and "rename" in found.problems[0]
-    assert preset_library.load_preset("water").parameters["ior"] == pytest.approx(1.3334033)
-
-
-def test_saving_again_replaces_and_a_full_disk_leaves_the_old(ball, folder, monkeypatch):
-    nd.assign(ball, nd.new_material("M", ior=1.4))
-    call(SAVE, name="Mine")
-    nd.assign(ball, nd.new_material("M", ior=1.6))
-    call(SAVE, name="mine")
-    assert preset_library.load_preset("mine").parameters["ior"] == 1.6
-    before = (folder / "mine.toml").read_bytes()
-
-    def fail(*_):
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr("nested_dielectric.model.files.os.fsync", fail)
-    with pytest.raises(RuntimeError, match="No space left"):
-        call(SAVE, name="mine")
-    assert [path.name for path in folder.iterdir()] == ["mine.toml"]
-    assert (folder / "mine.toml").read_bytes() == before
-
-
-def test_a_preset_of_the_users_is_renamed_and_deleted_and_built_in_ones_are_not(folder):
-    save_wine(folder)
-    call(RENAME, preset="my_wine", name="House Wine")
-    assert [path.name for path in folder.iterdir()] == ["house_wine.toml"]
-    assert preset_library.load_preset("house_wine").name == "House Wine"
-    assert preset_library.load_preset("house_wine").tags == ("red", "homemade")
-    save_wine(folder)
-    for name, words in (("House wine", "another preset of yours"), ("Water", "extension's"), ("", "a letter")):
-        with pytest.raises(RuntimeError, match=words):
-            call(RENAME, "EXEC_DEFAULT", preset="my_wine", name=name)
-    call(RENAME, preset="my_wine", name="MY WINE")
-    assert preset_library.load_preset("my_wine").name == "MY WINE"
-    call(DELETE, preset="house_wine")
-    assert [path.name for path in folder.iterdir()] == ["my_wine.toml"]
-    with pytest.raises(TypeError):
-        call(DELETE, preset="water")
-    with pytest.raises(ParameterError, match="no preset of yours"):
-        preset_library.delete_user_preset("../../presets/water")
-    call(DELETE, preset="my_wine")
-    assert not bpy.ops.nested_dielectric.delete_preset.poll()
-
-
-@pytest.mark.parametrize(
-    "text, words",
-    [("nonsense", "Expected"), ('name = "X"', "'group' is missing"),
-     ('name = 3\ngroup="G"\ntags=[]\ndescription=""\nsource=""\n[parameters]\n', "name must be a text"),
-     ('name = "X"\ngroup="G"\ntags=["a", 1]\ndescription=""\nsource=""\n[parameters]\n', "list of words"),
-     ('name = "X"\ngroup="G"\ntags=[]\ndescription=""\nsource=""\n[parameters]\nior = "high"\n', "ior"),
-     ('name = "X"\ngroup="G"\ntags=[]\ndescription=""\nsource=""\nparameters = 3\n', "parameters")],
-)  # fmt: skip
-def test_a_wrong_file_of_the_users_is_named_with_the_remedy_and_the_menu_goes_on(text, words, folder, draw):
-    save_wine(folder)
-    (folder / "bad.toml").write_text(text)
-    found = preset_library.catalogue()
-    assert words in found.problems[0] and "bad.toml" in found.problems[0] and "correct the file" in found.problems[0]
-    assert "my_wine" in nd.preset_names() and "bad" not in nd.preset_names()
-    with pytest.raises(ParameterError, match="bad.toml"):
-        preset_library.load_preset("bad")
-    labels = " ".join(keywords.get("text", "") for name, _, keywords in draw("Drinks") if name == "label")
-    assert "bad.toml" in labels.replace(" ", "")
-
-
-def test_the_command_line_lists_the_users_presets_and_names_wrong_files(folder, capsys):
-    save_wine(folder)
-    (folder / "bad.toml").write_text("nonsense")
-    assert cli.main(["presets"]) == 0
-    printed = capsys.readouterr()
-    (line,) = [line for line in printed.out.splitlines() if line.startswith("my_wine ")]
-    assert line.endswith("Red. (yours)")
-    assert "bad.toml" in printed.err and "correct the file" in printed.err
-
-
-def test_presets_that_come_and_go_are_seen_at_once(folder):
-    before = nd.preset_names()
-    save_wine(folder)
-    assert set(nd.preset_names()) - set(before) == {"my_wine"}
-    (folder / "my_wine.toml").unlink()
-    assert nd.preset_names() == before
-
-
-# Menus ----------------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def draw():
-    """Draw the popover with a group or words; what it draws, as names, arguments and keywords."""
-
-    class Layout:
-        def __init__(self, drawn):
-            self.__dict__["drawn"] = drawn
-
-        def __getattr__(self, name):
-            def call(*arguments, **keywords):
-                self.drawn.append((name, arguments, keywords))
-                return Layout(self.drawn)
-
-            return call
-
-        def __setattr__(self, name, value):
-            self.drawn.append((name, (value,), {}))
-
-    def draw(group="Glass", search="", cls=preset_menus.PresetPopover):
-        state = bpy.context.window_manager.nested_dielectric_presets
-        state.group, state.search = group, search
-        drawn = []
-        cls.draw(SimpleNamespace(layout=Layout(drawn), bl_label=getattr(cls, "bl_label", "")), bpy.context)
-        return drawn
-
-    return draw
 
 
 def buttons(drawn) -> list[str]:
@@ -409,7 +191,7 @@ def test_every_preset_has_a_picture_rendered_or_drawn(folder):
     wine = save_wine(folder)
     for preset in preset_library.catalogue().presets.values():
         preset_pictures.picture(preset)  # which has no number in a Blender without a window
-    shown = preset_pictures._pictures
+    shown = pictures._pictures
     assert shown.keys() >= set(presets.preset_names())
     drawn = np.empty(4 * preset_pictures.DRAWN_SIZE**2, dtype=np.float32)
     shown[f"colour {tuple(wine.parameters['transmittance'])}"].image_pixels_float.foreach_get(drawn)
@@ -417,29 +199,13 @@ def test_every_preset_has_a_picture_rendered_or_drawn(folder):
     assert red > 2.0 * green and alpha == 1.0
 
 
-# Preferences ----------------------------------------------------------------------------------------------------------
-
-
-def test_the_users_folder_is_blenders_for_the_user_unless_the_preferences_name_another(monkeypatch, tmp_path):
-    monkeypatch.undo()
-    assert "nested_dielectric" in str(preset_library.user_folder())
-    assert str(preset_library.user_folder()).startswith(bpy.utils.resource_path("USER"))
-    addon = bpy.context.preferences.addons.new()
-    addon.module = preset_library.PACKAGE
-    try:
-        addon.preferences.preset_folder = str(tmp_path)
-        assert preset_library.user_folder() == tmp_path
-        assert preferences.preference("depth") == "FIT"
-        addon.preferences.depth = "MEASURED"
-        assert preferences.preference("depth") == "MEASURED"
-    finally:
-        bpy.context.preferences.addons.remove(addon)
-    assert preferences.preference("depth") == "FIT"
-    assert preferences.website().startswith("https://")
-
-
 def test_every_setting_has_a_tooltip_without_a_full_stop():
-    classes = (preferences.Preferences, *preset_operators.CLASSES, preset_menus.NestedDielectricPresetChoice)
+    classes = (
+        preferences.Preferences,
+        *preset_operators.CLASSES,
+        *own_preset_operators.CLASSES,
+        preset_menus.NestedDielectricPresetChoice,
+    )
     for cls in classes:
         for name, prop in cls.__annotations__.items():
             words = prop.keywords

@@ -1,5 +1,6 @@
 """Priorities: who wins over whom, and that a move changes the number of nothing else."""
 
+import itertools
 import random
 
 import bpy
@@ -7,11 +8,9 @@ import pytest
 from scenes import add, add_box, mostly_again, new_scene
 
 import nested_dielectric as nd
-from nested_dielectric.nodes.trees import mend_nodes
+from nested_dielectric.nodes.mending import repair_nodes
 from nested_dielectric.scene import priorities
 from nested_dielectric.scene.materials import dielectric_node
-
-pytestmark = pytest.mark.quick
 
 CUBE = (0, 0, 0), (1, 1, 1)
 
@@ -185,7 +184,7 @@ def in_group(material):
     node = tree.nodes.new("ShaderNodeGroup")
     node.node_tree = group
     tree.links.new(node.outputs[0], tree.get_output_node("CYCLES").inputs["Surface"])
-    mend_nodes(material)
+    repair_nodes(material)
     return inner
 
 
@@ -195,7 +194,7 @@ def test_a_number_that_is_set_in_a_group_is_changed_where_it_is_set():
     assert nd.get_priority(bpy.data.objects["Cube of Ice"]) == 20
     assert priorities.move(bpy.context.scene, owner("Ice"), -1)
     assert inner.inputs["Priority"].default_value == nd.get_priority(bpy.data.objects["Cube of Ice"]) == 5
-    assert mend_nodes(owner("Ice")) == []
+    assert repair_nodes(owner("Ice")) == []
 
 
 def share_group():
@@ -269,7 +268,7 @@ def test_what_cannot_be_changed_is_named_and_stays_while_all_else_is_spaced_out_
     assert numbers()[name] == before[name]
     # Everything but it got room.
     taken = sorted(number for each, number in numbers().items() if each != "Other")
-    assert min(b - a for a, b in zip(taken, taken[1:])) >= 2
+    assert min(b - a for a, b in itertools.pairwise(taken)) >= 2
 
 
 def test_making_room_keeps_the_order_of_every_scene():
@@ -294,7 +293,7 @@ def test_spaced_numbers_keep_order_and_what_is_fixed_and_stand_apart_where_there
         fixed = set(rng.sample(crowd, rng.randint(0, min(3, len(crowd)))))
         result = priorities.spaced(crowd, fixed)
         after = [result[number] for number in crowd]
-        assert after == sorted(set(after)) and 0 <= after[0] and after[-1] <= 1000, seed
+        assert after == sorted(set(after)) and after[0] >= 0 and after[-1] <= 1000, seed
         assert all(result[number] == number for number in fixed), seed
         if not fixed and len(crowd) < 100:
             assert after == [10 * (index + 1) for index in range(len(crowd))], seed
@@ -328,7 +327,7 @@ def test_no_random_move_changes_another_number_or_passes_more_than_one_place():
             # Parted: beside those it was with. Alone: on the other side of the level that it passes.
             rest = [level for level in expected if level]
             cut = sum(bool(level) for level in expected[:target]) + (step > 0)
-            assert places() == rest[:cut] + [{name}] + rest[cut:]
+            assert places() == [*rest[:cut], {name}, *rest[cut:]]
     assert moved > 25 and refused > 0
 
 

@@ -1,25 +1,17 @@
-"""The panels of a scene: its media by material, whether it is ready to render, and their buttons."""
+"""The list of media in the panel: rows, their order, and buttons."""
 
 from types import SimpleNamespace
 
 import bpy
 import pytest
-from scenes import add_box, add_plane, mostly_again
-from ui import Layout, labels_and_operators, texts
+from panels import CUBE, PANELS, activate, add_media, exclude
+from scenes import add_box, mostly_again
+from ui import Layout, labels_and_operators
 
 import nested_dielectric as nd
-from nested_dielectric.analysis.analysis import is_analysed
-from nested_dielectric.preparation.preparation import put_back
-from nested_dielectric.preparation.report import last_report
 from nested_dielectric.scene import media
-from nested_dielectric.ui import notices
-from nested_dielectric.ui.operators import preparation_operators
-from nested_dielectric.ui.panels import media_list, media_rows, scene_panels
-
-pytestmark = pytest.mark.quick
-
-CUBE = (0, 0, 0), (1, 1, 1)
-PANELS = (scene_panels.SidebarPanel, scene_panels.ObjectPanel)
+from nested_dielectric.ui import media_list, media_rows
+from nested_dielectric.ui.panels import media_list_panel, scene_panels
 
 
 @pytest.fixture(autouse=True)
@@ -30,16 +22,6 @@ def scene():
     nd.register()
     yield bpy.context.scene
     nd.unregister()
-
-
-def add_media(**numbers):
-    """Cubes of a material each, with its number; where it stands in a list, of the material before with one of their own."""
-    material = None
-    for name, number in numbers.items():
-        own = number[0] if isinstance(number, list) else None
-        material = material if own is not None else nd.new_material(name, priority=number)
-        add_box(f"{name} Cube", *CUBE, material, own)
-    bpy.context.view_layer.update()
 
 
 def numbers():
@@ -56,7 +38,7 @@ def rows(text=""):
     lines = media_list.listed_lines(scene).lines
     manager = bpy.context.window_manager
     shown = SimpleNamespace(filter_name=text, bitflag_filter_item=1 << 30)
-    flags, order = scene_panels.MediaList.filter_items(shown, bpy.context, manager, "nested_dielectric_places")
+    flags, order = media_list_panel.MediaList.filter_items(shown, bpy.context, manager, "nested_dielectric_places")
     assert (
         len(flags) == len(manager.nested_dielectric_places) >= len(lines)
         and order == []
@@ -70,10 +52,6 @@ def choose(name):
     index = next(index for index, line in enumerate(lines) if line.chosen.name == name)
     bpy.context.scene.nested_dielectric_active = index
     return index
-
-
-def activate(name):
-    bpy.context.view_layer.objects.active = bpy.data.objects[name]
 
 
 def open_material(name):
@@ -102,7 +80,7 @@ def drawn_row(name):
     with bpy.context.temp_override(area=area, region=area.regions[0]):
         layout = bpy.context.window_manager.popover_begin__internal(ui_units_x=10).layout
         context = SimpleNamespace(scene=scene)
-        scene_panels.MediaList.draw_item(None, context, Layout(layout, found), None, None, 0, None, "", index)
+        media_list_panel.MediaList.draw_item(None, context, Layout(layout, found), None, None, 0, None, "", index)
     return found
 
 
@@ -151,15 +129,6 @@ def test_choosing_an_object_selects_it_and_nothing_else(scene):
     exclude("Two Cube")
     choose("Two Cube")
     assert [obj.name for obj in bpy.context.selected_objects] == ["One Cube"]
-
-
-def exclude(name):
-    """Take an object out of the view layer."""
-    collection = bpy.data.collections.new("Excluded")
-    bpy.context.scene.collection.children.link(collection)
-    bpy.context.scene.collection.objects.unlink(bpy.data.objects[name])
-    collection.objects.link(bpy.data.objects[name])
-    bpy.context.view_layer.layer_collection.children["Excluded"].exclude = True
 
 
 def test_objects_of_the_active_material_are_selected_by_a_button(capfd):
@@ -235,228 +204,6 @@ def test_the_panel_says_over_whom_the_active_row_wins(draw, panel):
         assert f"nested_dielectric.{operator}" in buttons
 
 
-# Ready or not ---------------------------------------------------------------------------------------------------------
-
-
-def alerts(drawn):
-    """Texts that stand in red."""
-    return [keywords["text"] for name, _, keywords in drawn if name == "label" and keywords.get("icon") == "ERROR"]
-
-
-@pytest.mark.parametrize("panel", mostly_again(PANELS))
-@pytest.mark.parametrize("engine", mostly_again(("BLENDER_EEVEE", "CYCLES")))
-def test_a_scene_without_media_shows_nothing_red_and_says_what_a_medium_needs(draw, panel, engine, scene):
-    scene.render.engine = engine
-    scene.cycles.device = "GPU"
-    nd.new_material("Nobody's")
-    drawn = draw(panel)
-    assert alerts(drawn) == []
-    assert (
-        "No media yet. Select an object and assign a preset; Prepare Scene then sets" in labels_and_operators(drawn)[0]
-    )
-    assert notices.render_problem(scene) is None
-
-
-def test_a_blender_that_cannot_render_media_is_no_alarm_in_a_scene_without_any(draw, monkeypatch):
-    for module in (scene_panels, notices):
-        monkeypatch.setattr(module, "blender_problem", lambda: "this Blender cannot")
-    drawn = draw(scene_panels.SidebarPanel)
-    assert alerts(drawn) == [] and "They would not render here: this Blender cannot" in texts(drawn)[0]
-    add_media(Water=30)
-    assert alerts(draw(scene_panels.SidebarPanel)) == ["This Blender cannot"]
-
-
-@pytest.mark.parametrize("panel", mostly_again(PANELS))
-def test_the_panel_says_ready_until_settings_or_media_change(draw, panel, scene):
-    add_media(Water=30)
-    assert "renders with EEVEE" in labels_and_operators(draw(panel))[0] and alerts(draw(panel))
-    bpy.ops.nested_dielectric.prepare()
-    labels, buttons = labels_and_operators(draw(panel))
-    assert "Ready to Render As of the last Prepare" in labels and "nested_dielectric.put_back" in buttons
-    assert "Render Engine: EEVEE -> Cycles" in labels and "Max Bounces: 12 -> 64" in labels
-    assert "Media are told what surrounds them" in labels and " Changes " in labels
-    scene.render.engine = "BLENDER_WORKBENCH"
-    drawn = draw(panel)
-    assert "Ready" not in labels_and_operators(drawn)[0] and alerts(drawn)
-    scene.render.engine = "CYCLES"
-    assert "Ready" in labels_and_operators(draw(panel))[0]
-    add_media(Ice=20)
-    assert "Media have come or gone since the last Prepare" in labels_and_operators(draw(panel))[0]
-
-
-@pytest.mark.parametrize("panel", mostly_again(PANELS))
-def test_problems_stay_to_be_read_each_with_a_button_and_its_remedy(draw, panel):
-    add_media(Water=30)
-    for index in range(5):
-        add_plane(f"Sheet {index}", 1.0, (9, 9, index), (0, 0, 1), bpy.data.materials["Water"])
-    bpy.ops.nested_dielectric.prepare()
-    drawn = draw(panel)
-    labels, _, buttons = texts(drawn)
-    assert "5 Problems at the Last Prepare" in labels and "Ready" not in labels
-    assert {f"Sheet {index}" for index in range(5)} <= buttons.keys()
-    assert labels.count("Is not closed") == 5 and labels.count("recalculate its normals") == 5
-    closed = [keywords["default_closed"] for name, _, keywords in drawn if name == "panel"]
-    assert closed == [False] + [True] * 6  # the last are what has been changed, and what renders
-    # Whatever has happened since.
-    bpy.data.objects.remove(bpy.data.objects["Sheet 0"])
-    assert "5 Problems at the Last Prepare" in texts(draw(panel))[0]
-
-
-def test_the_report_of_the_operator_ends_with_whether_the_scene_is_ready(capfd):
-    add_media(Water=30)
-    bpy.ops.nested_dielectric.prepare()
-    lines = "".join(capfd.readouterr()).splitlines()
-    assert "Info: Render Engine: EEVEE -> Cycles" in lines and lines[-1] == "Info: Ready to render"
-    add_plane("Sheet", 1.0, (9, 9, 9), (0, 0, 1), bpy.data.materials["Water"])
-    bpy.ops.nested_dielectric.prepare()
-    lines = "".join(capfd.readouterr()).splitlines()
-    assert any(line.startswith("Warning: 'Sheet' is not closed") for line in lines)
-    assert lines[-1] == "Warning: 1 problem to look at before rendering"
-
-
-def test_preparing_and_putting_back_are_undone_with_what_is_kept_of_them(scene):
-    add_media(Water=30)
-    bpy.ops.ed.undo_push(message="water")
-
-    def found():
-        scene = bpy.context.scene
-        return scene.render.engine, scene.cycles.max_bounces, last_report(scene) is not None, is_analysed(scene)
-
-    before = found()
-    bpy.ops.nested_dielectric.prepare("EXEC_DEFAULT", True)
-    after = found()
-    assert before[2:] == (False, False) and after == ("CYCLES", 64, True, True)
-    bpy.ops.nested_dielectric.put_back("EXEC_DEFAULT", True)
-    assert found() == before
-    bpy.ops.ed.undo()
-    assert found() == after
-    bpy.ops.ed.undo()
-    assert found() == before
-    bpy.ops.ed.redo()
-    assert found() == after and put_back(bpy.context.scene)
-
-
-@pytest.mark.parametrize("where", mostly_again(("here", "hidden", "excluded", "instanced", "unselectable")))
-def test_a_problem_selects_its_object_or_says_why_it_cannot(where, capfd, scene):
-    add_media(Water=30, Ice=20)
-    obj = bpy.data.objects["Water Cube"]
-    if where == "hidden":
-        obj.hide_set(True)
-    elif where == "unselectable":
-        obj.hide_select = True
-    elif where == "excluded":
-        exclude(obj.name)
-    elif where == "instanced":
-        collection = bpy.data.collections.new("Pool")
-        collection.objects.link(obj)
-        scene.collection.objects.unlink(obj)
-        empty = bpy.data.objects.new("Instance", None)
-        empty.instance_type, empty.instance_collection = "COLLECTION", collection
-        scene.collection.objects.link(empty)
-    bpy.context.view_layer.update()
-    activate("Ice Cube")
-    bpy.data.objects["Ice Cube"].select_set(True)
-    result = bpy.ops.nested_dielectric.show_problem(name="Water Cube")
-    output = "".join(capfd.readouterr())
-    selected = [each.name for each in bpy.context.selected_objects]
-    expected, said = {
-        "here": ("Water Cube", ""),
-        "hidden": ("Ice Cube", "'Water Cube' is hidden in the viewport; show it"),
-        "unselectable": ("Ice Cube", "'Water Cube' may not be selected; allow it"),
-        "excluded": ("Ice Cube", "'Water Cube' is not in view layer 'ViewLayer'; include its collection"),
-        "instanced": ("Instance", "'Water Cube' is in a collection that is instanced; its instances are selected"),
-    }[where]
-    assert selected == [expected] and said in output
-    assert result == ({"CANCELLED"} if expected == "Ice Cube" else {"FINISHED"})
-
-
-def test_a_problem_of_a_material_selects_its_objects_and_of_nothing_says_so(capfd, scene):
-    add_media(Water=30, Ice=20)
-    assert bpy.ops.nested_dielectric.show_problem(name="Ice") == {"FINISHED"}
-    assert [obj.name for obj in bpy.context.selected_objects] == ["Ice Cube"]
-    for name, said in (
-        ("Gone", "'Gone' is gone; prepare the scene again"),
-        (scene.name, "is no object; its problem concerns the whole scene"),
-        ("ViewLayer", "is no object; its problem concerns the whole scene"),
-    ):
-        assert bpy.ops.nested_dielectric.show_problem(name=name) == {"CANCELLED"}
-        assert said in "".join(capfd.readouterr())
-    assert [obj.name for obj in bpy.context.selected_objects] == ["Ice Cube"]
-    bpy.ops.object.mode_set(mode="EDIT")
-    with pytest.raises(RuntimeError, match="Leave this mode for Object Mode first"):
-        bpy.ops.nested_dielectric.show_problem(name="Ice")
-
-
-# Before a render ------------------------------------------------------------------------------------------------------
-
-
-def test_what_keeps_media_from_showing_is_named(scene):
-    add_media(Water=30)
-    nd.prepare(scene, backend="OSL")
-    assert notices.render_problem(scene) is None
-    inputs = bpy.data.materials["Water"].node_tree.nodes["Nested Dielectric"].inputs
-    for setting, value, other, words in (
-        ("render.engine", "BLENDER_WORKBENCH", "CYCLES", "renders with BLENDER_WORKBENCH"),
-        ("cycles.device", "GPU", "CPU", "renders on the GPU"),
-        ("cycles.shading_system", False, True, "without Open Shading Language"),
-    ):
-        owner, _, name = setting.partition(".")
-        setattr(getattr(scene, owner), name, value)
-        assert words in notices.render_problem(scene)
-        setattr(getattr(scene, owner), name, other)
-    inputs["Disperse"].default_value = True
-    bpy.context.view_layer.update()
-    assert "without motion blur" in notices.render_problem(scene)
-    nd.prepare(scene)
-    assert notices.render_problem(scene) is None
-    tree = bpy.data.materials["Water"].node_tree
-    node = tree.nodes["Nested Dielectric"]
-    node.node_tree.interface.remove(node.node_tree.interface.items_tree["IOR"])
-    bpy.context.view_layer.update()
-    assert "is damaged" in notices.render_problem(scene)
-
-
-def drawn_by(function, **context):
-    found = []
-    area = bpy.context.window.screen.areas[0]
-    values = {
-        "scene": bpy.context.scene,
-        "region": SimpleNamespace(width=300),
-        "preferences": SimpleNamespace(system=SimpleNamespace(ui_scale=1.0)),
-    }
-    with bpy.context.temp_override(area=area, region=area.regions[0]):
-        layout = bpy.context.window_manager.popover_begin__internal(ui_units_x=10).layout
-        function(SimpleNamespace(layout=Layout(layout, found)), SimpleNamespace(**values | context))
-    return found
-
-
-@pytest.mark.parametrize("place, function", notices.PLACES)
-def test_blenders_own_panels_and_headers_say_why_media_will_not_show(place, function, scene):
-    picture = SimpleNamespace(image=SimpleNamespace(type="RENDER_RESULT"))
-    assert function in getattr(bpy.types, place)._dyn_ui_initialize()
-    assert drawn_by(function, space_data=picture) == []
-    add_media(Water=30)
-    found = drawn_by(function, space_data=picture)
-    assert "renders with" in " ".join(alerts(found))
-    nd.prepare(scene)
-    assert drawn_by(function, space_data=picture) == []
-    nd.unregister()
-    assert function not in getattr(bpy.types, place)._dyn_ui_initialize()
-
-
-def test_other_pictures_than_renders_carry_no_notice():
-    add_media(Water=30)
-    for picture in (None, SimpleNamespace(type="IMAGE")):
-        assert drawn_by(notices.draw_over_picture, space_data=SimpleNamespace(image=picture)) == []
-
-
-def test_long_reasons_are_shortened_where_there_is_one_line(monkeypatch):
-    add_media(Water=30)
-    monkeypatch.setattr(notices, "settings_problem", lambda scene: "it is so " * 40)
-    (line,) = alerts(drawn_by(notices.draw_in_line))
-    assert len(line) <= notices.MOST_CHARACTERS and line.startswith("It is so") and line.endswith("...")
-
-
 def test_places_for_rows_are_made_where_there_are_too_few(draw):
     add_media(**{f"Medium {index}": index for index in range(30)})
     manager = bpy.context.window_manager
@@ -468,13 +215,3 @@ def test_places_for_rows_are_made_where_there_are_too_few(draw):
     assert len(manager.nested_dielectric_places) == 30
     draw(scene_panels.SidebarPanel)
     assert not bpy.app.timers.is_registered(media_rows._make_wanted)
-
-
-def test_prepare_reports_not_thousands_of_problems(monkeypatch, capfd):
-    add_media(Water=30)
-    monkeypatch.setattr(preparation_operators, "MOST_REPORTS", 2)
-    for index in range(4):
-        add_plane(f"Sheet {index}", 1.0, (9, 9, index), (0, 0, 1), bpy.data.materials["Water"])
-    bpy.ops.nested_dielectric.prepare()
-    lines = "".join(capfd.readouterr()).splitlines()
-    assert sum("is not closed or" in line for line in lines) == 2

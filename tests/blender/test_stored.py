@@ -1,30 +1,33 @@
 """What the extension keeps in a file may be changed, removed or another's: it is replaced or named, and never trusted."""
 
+import itertools
+
 import bpy
 import numpy as np
 import pytest
 from scenes import add_box, add_point_light, add_sphere, new_scene
 
 import nested_dielectric as nd
-from nested_dielectric.analysis.analysis import clear_analysis
+from nested_dielectric.analysis.mesh_modifiers import is_offset
+from nested_dielectric.analysis.surroundings import clear_analysis
 from nested_dielectric.model.presets import load_preset
-from nested_dielectric.model.spectra import spectral_table
-from nested_dielectric.nodes import node_group
-from nested_dielectric.nodes.node_group import OFFSET_ATTRIBUTE, OFFSET_GROUP, find_lights, uses_table
+from nested_dielectric.model.spectral_tables import spectral_table
+from nested_dielectric.nodes.lights_group import find_lights
+from nested_dielectric.nodes.material_version import find_group
+from nested_dielectric.nodes.names import OFFSET_ATTRIBUTE, OFFSET_GROUP
+from nested_dielectric.nodes.spectral_tables import uses_table
 from nested_dielectric.preparation.checks import find_problems
-from nested_dielectric.preparation.parting import is_offset
 from nested_dielectric.scene import media
-from nested_dielectric.scene.lights import listed_lamps
-from nested_dielectric.scene.materials import is_preset, material_table, spectrum_settings, usable_spectrum_settings
+from nested_dielectric.scene.lights import listed_lights
+from nested_dielectric.scene.material_spectra import material_table, spectrum_settings, usable_spectrum_settings
 from nested_dielectric.scene.passes import add_passes
-
-pytestmark = pytest.mark.quick
+from nested_dielectric.scene.preset_materials import is_preset
 
 NODE = "Nested Dielectric"
 
 
 def build() -> bpy.types.Scene:
-    """A dispersing ball across the surface of water that stands exactly on glass, and a lamp that a lobe carries."""
+    """A dispersing ball across the surface of water that stands exactly on glass, and a light that a lobe carries."""
     scene = new_scene(8)
     ball = add_sphere("Ball", 0.6, nd.new_material("Prism", preset="bk7", disperse=True), segments=16)
     ball["nd_priority"] = 1
@@ -39,7 +42,7 @@ def build() -> bpy.types.Scene:
 
 
 def group() -> bpy.types.NodeTree:
-    return node_group.find_group()
+    return find_group()
 
 
 def image() -> bpy.types.Image:
@@ -56,7 +59,7 @@ def assert_prepared(scene: bpy.types.Scene) -> None:
     node = material("Prism").node_tree.nodes[NODE]
     assert node.node_tree == group() and uses_table(node, spectral_table(gamut="REC709"))
     assert np.array_equal(material_table(material("Prism")), spectral_table(gamut="REC709"))
-    assert listed_lamps(bpy.context.scene) == [bpy.data.objects["Lamp"]]
+    assert listed_lights(bpy.context.scene) == [bpy.data.objects["Lamp"]]
     assert [obj.name for obj in media.media(scene)] == ["Ball", "Floor", "Far", "Water"]
 
 
@@ -93,25 +96,25 @@ DAMAGES = {
     "the shader is gone": lambda: group().nodes.remove(group().nodes["Nested Dielectric Shader"]),
     "the shader is another's": lambda: setattr(group().nodes["Nested Dielectric Shader"], "mode", "EXTERNAL"),
     "the tables' node is gone": lambda: group().nodes.remove(group().nodes["Spectral Tables"]),
-    "the lamps' node is empty": lambda: setattr(group().nodes["Nested Dielectric Lights"], "node_tree", None),
+    "the lights' node is empty": lambda: setattr(group().nodes["Nested Dielectric Lights"], "node_tree", None),
     "a socket is gone": lambda: group().interface.remove(group().interface.items_tree["Abbe"]),
     "a socket is of another kind": lambda: setattr(
         group().interface.items_tree["Abbe"], "socket_type", "NodeSocketColor"
     ),
     "an analysis' socket is gone": lambda: group().interface.remove(group().interface.items_tree["Surroundings"]),
-    "the lamps' drivers are gone": lambda: find_lights().animation_data_clear(),
-    "a lamp's driver has lost its target": lambda: [
+    "the lights' drivers are gone": lambda: find_lights().animation_data_clear(),
+    "a light's driver has lost its target": lambda: [
         curve.driver.variables.remove(curve.driver.variables[0]) for curve in find_lights().animation_data.drivers
     ],
-    "a driver of a lamp is gone": lambda: find_lights().animation_data.drivers.remove(
+    "a driver of a light is gone": lambda: find_lights().animation_data.drivers.remove(
         find_lights().animation_data.drivers[-1]
     ),
-    "the lamps' group holds an artist's script": lambda: find_lights().nodes.new("ShaderNodeScript"),
-    "another group has the lamps' name": lambda: take_name(
+    "the lights' group holds an artist's script": lambda: find_lights().nodes.new("ShaderNodeScript"),
+    "another group has the lights' name": lambda: take_name(
         bpy.data.node_groups, "Nested Dielectric Lights", "GeometryNodeTree"
     ),
     "another group has the group's name": lambda: take_name(bpy.data.node_groups, NODE, "CompositorNodeTree"),
-    "the lamps' group has lost an output": lambda: find_lights().interface.remove(
+    "the lights' group has lost an output": lambda: find_lights().interface.remove(
         find_lights().interface.items_tree["Axis"]
     ),
     "the texts are gone": lambda: [bpy.data.texts.remove(text) for text in list(bpy.data.texts)],
@@ -193,7 +196,7 @@ def test_a_modifier_by_our_name_that_does_something_else_is_not_trusted():
     tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
     tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
     ends = [tree.nodes.new(kind) for kind in ("NodeGroupInput", "GeometryNodeTransform", "NodeGroupOutput")]
-    for first, second in zip(ends, ends[1:]):
+    for first, second in itertools.pairwise(ends):
         tree.links.new(first.outputs[0], second.inputs["Geometry"] if second != ends[-1] else second.inputs[0])
     upper = add_box("Upper", (-1, -1, 0), (1, 1, 1), nd.new_material("Glass", preset="glass"))
     lower = add_box("Lower", (-1, -1, -1), (1, 1, 0), nd.new_material("Sea", preset="water"))

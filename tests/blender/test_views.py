@@ -1,4 +1,4 @@
-"""While a viewport shows materials, cut surfaces stand in viewports for the artist's media, which stay his to select and edit."""
+"""While viewports show materials, cut surfaces stand there for the artist's media, which stay his to select and edit."""
 
 import types
 
@@ -7,12 +7,14 @@ import pytest
 from scenes import add_box, add_sphere, new_scene
 
 import nested_dielectric as nd
-from nested_dielectric.analysis import analysis
-from nested_dielectric.cutting import cutting, views
-from nested_dielectric.preparation import live, preparation
-from nested_dielectric.scene import rays
-
-pytestmark = pytest.mark.quick
+from nested_dielectric.analysis import surroundings
+from nested_dielectric.cutting import (
+    copied_settings,
+    cut_scene,
+    views,
+)
+from nested_dielectric.preparation import file_handlers, idle, live, prepare_scene
+from nested_dielectric.scene import ray_visibility
 
 
 @pytest.fixture
@@ -35,7 +37,7 @@ def surface() -> bpy.types.Object:
 
 def seen(obj: bpy.types.Object) -> set[str]:
     """Kinds of rays that meet an object."""
-    return {kind for kind in rays.RAY_KINDS if getattr(obj, f"visible_{kind}")}
+    return {kind for kind in ray_visibility.RAY_KINDS if getattr(obj, f"visible_{kind}")}
 
 
 def depsgraph() -> bpy.types.Depsgraph:
@@ -48,7 +50,7 @@ def faces() -> int:
     return len(surface().evaluated_get(depsgraph()).data.polygons)
 
 
-ALL = set(rays.RAY_KINDS)
+ALL = set(ray_visibility.RAY_KINDS)
 
 
 def test_a_viewport_that_shows_materials_shows_cut_surfaces_alone(ball):
@@ -93,7 +95,7 @@ def test_what_is_hidden_in_viewports_has_no_surface_there(ball):
     "end",
     [
         lambda: nd.prepare(scene(), cut=False),
-        lambda: preparation.put_back(scene()),
+        lambda: prepare_scene.put_back(scene()),
         live.remove,
         lambda: scene().collection.objects.unlink(bpy.data.objects["Block"]) or live.update_cut(scene()),
     ],
@@ -122,7 +124,7 @@ def test_objects_that_are_appended_from_such_a_scene_are_seen(ball, tmp_path):
     new_scene()
     with bpy.data.libraries.load(file) as (_, wanted):
         wanted.objects = ["Ball"]
-    live.show_strays()
+    file_handlers.unhide_orphans()
     assert seen(wanted.objects[0]) == ALL and not wanted.objects[0].hide_render
 
 
@@ -132,7 +134,7 @@ def test_a_copy_of_an_object_that_is_not_seen_is_cut_and_seen_too(ball):
     scene().collection.objects.link(copy)
     copy.location.x += 0.3
     live.update_cut(scene())
-    twin = bpy.data.objects[copy.name + cutting.SUFFIX]
+    twin = bpy.data.objects[copy.name + copied_settings.SUFFIX]
     assert seen(twin) == ALL
     views.show(scene(), False)
     assert seen(copy) == ALL
@@ -145,17 +147,19 @@ def test_what_animates_by_which_rays_an_object_is_met_is_left_alone(ball):
 
 
 def test_surfaces_in_viewports_change_nothing_that_is_known_of_a_scene(ball):
-    found = analysis.last_found(scene())
+    found = surroundings.last_found(scene())
     views.show(scene(), True)
-    assert not cutting.concerns(scene(), types.SimpleNamespace(updates=[]))
+    assert not cut_scene.may_change_cut(scene(), types.SimpleNamespace(updates=[]))
     again = nd.prepare(scene())
-    assert analysis.last_found(scene()) == found and set(again.cut.media) == {"Ball", "Block"} and not again.problems
+    assert (
+        surroundings.last_found(scene()) == found and set(again.cut.media) == {"Ball", "Block"} and not again.problems
+    )
 
 
 def test_while_changes_follow_on_each_other_surfaces_move_as_they_are(ball):
     views.show(scene(), True)
     before = faces()
-    views.hold(scene(), bpy.context.view_layer)
+    views.freeze(scene(), bpy.context.view_layer)
     assert faces() == before and len(surface().data.polygons) == before
     ball.location.z += 0.3
     assert faces() == before
@@ -174,7 +178,7 @@ def test_while_changes_follow_on_each_other_surfaces_move_as_they_are(ball):
 def test_a_render_cuts_what_viewports_hold(ball):
     views.show(scene(), True)
     assert faces()
-    views.hold(scene(), bpy.context.view_layer)
+    views.freeze(scene(), bpy.context.view_layer)
     modifier = surface().modifiers[0]
     assert len(surface().data.polygons) and modifier.show_render and not modifier.show_viewport
 
@@ -205,8 +209,8 @@ def test_in_edit_mode_viewports_go_on_showing_cut_surfaces(ball):
     views.show(scene(), True)
     bpy.context.view_layer.objects.active = ball
     bpy.ops.object.mode_set(mode="EDIT")
-    live.analyse_at_rest()
+    idle.update_idle_scenes()
     assert surface().modifiers[0].show_viewport and not seen(ball)
     bpy.ops.object.mode_set(mode="OBJECT")
-    live.analyse_at_rest()
+    idle.update_idle_scenes()
     assert seen(surface()) == ALL

@@ -1,4 +1,7 @@
-"""Scenes that one Blender saves and another renders: ``python tests/helpers/crossing.py FOLDER`` saves them with their pictures."""
+"""Scenes that one Blender saves and another renders.
+
+``python tests/helpers/crossing.py FOLDER`` saves them with their pictures.
+"""
 
 from __future__ import annotations
 
@@ -106,13 +109,13 @@ def build_told_of_by_object() -> bool:
 
 @_scene
 def build_lobes() -> bool:
-    """A lamp that lobes carry, behind rough glass."""
+    """A light that lobes carry, behind rough glass."""
     nested(roughness=0.3)
     set_world((0.1, 0.1, 0.1))
-    lamp = add("Lamp", bpy.data.lights.new("Lamp", "AREA"), (0.0, 3.0, 1.0))
-    lamp.data.energy = 200.0
-    lamp.rotation_euler = (-1.4, 0.0, 0.0)
-    lamp.visible_transmission = lamp.visible_glossy = False
+    light = add("Lamp", bpy.data.lights.new("Lamp", "AREA"), (0.0, 3.0, 1.0))
+    light.data.energy = 200.0
+    light.rotation_euler = (-1.4, 0.0, 0.0)
+    light.visible_transmission = light.visible_glossy = False
     return True
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 sys.modules["nested_dielectric"] = None  # any import of it fails
 
-import bpy
+import bpy  # noqa: E402
 
 samples, percentage = map(int, sys.argv[1:3])
 folder = Path(sys.argv[3])

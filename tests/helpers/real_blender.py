@@ -1,6 +1,6 @@
 """Run a Blender application beside the bpy wheel: renders of files, and pictures of its window.
 
-``python tests/helpers/real_blender.py render FILE.blend PICTURE.exr`` and ``python tests/helpers/real_blender.py window FILE.blend FOLDER``.
+``python tests/helpers/real_blender.py render FILE.blend PICTURE.exr`` and the same with ``window FILE.blend FOLDER``.
 
 ND_BLENDER holds the command that runs the application, such as ``/opt/blender/blender``; ND_BLENDER_WINDOW one that gives it a
 screen, such as ``xvfb-run -a /opt/blender/blender``, the former one unless set. An application that sees the project's folder

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from scenes import batches, tile_means
+from scenes import batches
+from significance import tile_means
 
 FOLDER = Path(__file__).parents[1] / "references"
 DIGITS = 5

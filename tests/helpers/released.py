@@ -1,6 +1,6 @@
 """Write a file as this release makes it, for the tests of the next: ``python tests/helpers/released.py FILE.blend``.
 
-Everything that an update of its materials has to keep is in it: values, links, drivers, keyframes, tables, lamps, priorities
+Everything that an update of its materials has to keep is in it: values, links, drivers, keyframes, tables, lights, priorities
 and what an analysis found.
 """
 
@@ -21,7 +21,7 @@ IORS = {1: 1.5, LAST_FRAME: 1.7}
 
 
 def build_scene() -> bpy.types.Scene:
-    """Glass whose index is keyframed, water in it whose roughness is driven, a bubble, a prism that disperses and a lamp that
+    """Glass whose index is keyframed, water in it whose roughness is driven, a bubble, a prism that disperses and a light that
     the lobe carries.
     """
     new_scene(48)
@@ -35,10 +35,10 @@ def build_scene() -> bpy.types.Scene:
     prism = nd.new_material("Prism", preset="sf11", disperse=True, spectral_distribution="FL2", clamp_negative=False)
     add_box("Prism", (-1.4, -0.3, -0.3), (-1.1, 0.3, 0.3), prism)
 
-    lamp = add("Lamp", bpy.data.lights.new("Lamp", "AREA"), (0.0, 3.0, 1.0))
-    lamp.data.energy = 200.0
-    lamp.rotation_euler = (-1.4, 0.0, 0.0)
-    lamp.visible_transmission = False
+    light = add("Lamp", bpy.data.lights.new("Lamp", "AREA"), (0.0, 3.0, 1.0))
+    light.data.energy = 200.0
+    light.rotation_euler = (-1.4, 0.0, 0.0)
+    light.visible_transmission = False
 
     index = glass.node_tree.nodes[NODE].inputs["IOR"]
     for frame, ior in IORS.items():

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
+import functools
 import math
+import os
+import re
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -14,15 +19,13 @@ import pytest
 from mathutils import Matrix, Vector
 
 import nested_dielectric as nd
+from nested_dielectric.model.parameter import GROUP_NAME
+from nested_dielectric.nodes.group import ensure_group
 
 bpy.utils.expose_bundled_modules()
-import OpenImageIO as oiio
+import OpenImageIO as oiio  # noqa: E402
 
 BOUNCES = 256
-
-# Single precision through a handful of operations; a smooth interface without internal reflections has no noise but
-# the choice between two lobes, one of which is black.
-ROUNDING = 2e-5
 
 
 def mostly_again(values, first: int = 1) -> list:
@@ -31,9 +34,33 @@ def mostly_again(values, first: int = 1) -> list:
     return values[:first] + [pytest.param(value, marks=pytest.mark.again) for value in values[first:]]
 
 
-def new_scene(resolution: int = 32) -> bpy.types.Scene:
-    """An empty scene whose renders are unbiased: no clamping, denoising or adaptive sampling, a box filter."""
+@functools.cache
+def group_file() -> str:
+    """Write the node group into a file, as it takes longer to make than most scenes do to render; return its path."""
+    folder = tempfile.mkdtemp()
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
     bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.data.libraries.write(f"{folder}/group.blend", {ensure_group()})
+    return f"{folder}/group.blend"
+
+
+def empty_file(with_group: bool = False) -> None:
+    """Open an empty file; with the node group, which the first medium would make, where a test is not about that."""
+    path = group_file() if with_group else ""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    if with_group:
+        with bpy.data.libraries.load(path) as (_, wanted):
+            wanted.node_groups = [GROUP_NAME]
+        for text in bpy.data.texts:
+            text.use_fake_user = True
+
+
+def new_scene(resolution: int = 32, with_group: bool = False) -> bpy.types.Scene:
+    """An empty scene whose renders are unbiased: no clamping, denoising or adaptive sampling, a box filter.
+
+    For `with_group` see :func:`empty_file`.
+    """
+    empty_file(with_group)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.render.resolution_x = scene.render.resolution_y = resolution
@@ -71,6 +98,22 @@ def read_picture(path: str | Path) -> np.ndarray:
     return np.array(oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT))[..., :3].astype(np.float64)
 
 
+def write_picture(path: str | Path, picture: np.ndarray) -> None:
+    """Write a picture of (height, width, 3) floats as 32-bit OpenEXR."""
+    height, width, channels = picture.shape
+    buffer = oiio.ImageBuf(oiio.ImageSpec(width, height, channels, oiio.FLOAT))
+    buffer.set_pixels(oiio.ROI(), np.ascontiguousarray(picture, dtype=np.float32))
+    assert buffer.write(str(path)), buffer.geterror()
+
+
+def failure_folder() -> Path:
+    """Make the folder for pictures of the test that runs: ``out/tests/`` and its name."""
+    name = os.environ.get("PYTEST_CURRENT_TEST", "no test").split("::", 1)[-1].removesuffix(" (call)")
+    folder = Path(__file__).parents[2] / "out" / "tests" / re.sub(r"[^\w.\-]+", "_", name).strip("_")
+    folder.mkdir(parents=True, exist_ok=True)
+    return folder
+
+
 SUBPIXELS = 4
 """Parts of a pixel's side that batches are made of."""
 
@@ -96,45 +139,6 @@ def split_into_batches(picture: np.ndarray, count: int) -> np.ndarray:
     parts = np.take_along_axis(parts, order[:, :, None], axis=1)
     parts = parts.reshape(height // SUBPIXELS, width // SUBPIXELS, count, SUBPIXELS**2 // count, channels)
     return np.moveaxis(parts.mean(axis=3), 2, 0)
-
-
-def tile_means(pictures: np.ndarray, size: int = 16) -> np.ndarray:
-    """Means over square tiles; (count, rows, columns, 3)."""
-    count, height, width, channels = pictures.shape
-    return pictures.reshape(count, height // size, size, width // size, size, channels).mean(axis=(2, 4))
-
-
-def assert_same_picture(
-    ours: np.ndarray, reference: np.ndarray, errors: float = 4.0, mean: float = 1e-3, size: int = 16
-) -> None:
-    """Two sets of batches show the same picture; the reference may be one of means of tiles.
-
-    No square tile of `size` pixels differs by more than `errors` standard errors, estimated from the spread of the batches
-    (Student's t with 30 degrees of freedom passes 4 in one of 2,600 tiles by chance), and the mean of the whole differs by
-    less than `mean` of it. Batches of subpixels spread up to 1.4 times as far as their mean errs, so tiles pass more easily.
-    """
-    a = tile_means(ours, size)
-    b = reference if reference.shape[1:] == a.shape[1:] else tile_means(reference, size)
-    spread = np.sqrt(a.var(axis=0, ddof=1) / len(a) + b.var(axis=0, ddof=1) / len(b))
-    difference = np.abs(a.mean(axis=0) - b.mean(axis=0))
-    # A tile without noise differs by rounding alone.
-    worst = (difference / np.maximum(spread, 1e-6 * np.maximum(b.mean(axis=0), 1e-3))).max()
-    assert worst < errors, f"a tile differs by {worst:.1f} standard errors"
-    relative = abs(ours.mean() / reference.mean() - 1.0)
-    assert relative < mean, f"the mean differs by {relative:.2%}"
-
-
-def standard_error(picture: np.ndarray) -> np.ndarray:
-    """Of the mean of all pixels, by channel."""
-    pixels = picture.reshape(-1, 3)
-    return pixels.std(axis=0) / math.sqrt(len(pixels))
-
-
-def assert_mean(picture: np.ndarray, expected) -> None:
-    """The mean is as expected within 4 standard errors and rounding."""
-    mean = picture.reshape(-1, 3).mean(axis=0)
-    tolerance = 4.0 * standard_error(picture) + ROUNDING
-    assert np.all(np.abs(mean - expected) <= tolerance), f"{mean} instead of {expected} +- {tolerance}"
 
 
 def set_world(color: tuple[float, float, float] = (1.0, 1.0, 1.0), strength: float = 1.0) -> bpy.types.NodeTree:

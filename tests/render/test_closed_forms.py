@@ -8,14 +8,12 @@ import bmesh  # isort: skip
 import numpy as np
 import pytest
 from scenes import (
-    ROUNDING,
     add_box,
     add_camera,
     add_emission_port,
     add_mesh,
     add_plane,
     add_sun,
-    assert_mean,
     diffuse,
     emission,
     fresnel,
@@ -24,34 +22,13 @@ from scenes import (
     render,
     set_half_world,
     set_world,
-    standard_error,
 )
+from significance import ROUNDING, assert_mean, standard_error
+from slabs import AIM, DEPTH, TINT, aim_camera, beer_lambert, tinted
 
 import nested_dielectric as nd
 
-TINT = (0.8, 0.5, 0.2)
-DEPTH = 0.5
 THICKNESS = 0.7
-
-# Off the diagonals along which faces are split into triangles: where a ray meets such an edge to the last bit, Cycles'
-# own Glass too takes the neighbouring triangle for another surface.
-AIM = (0.37, 0.11, 0.0)
-
-
-def aim_camera(degrees: float = 0.0, distance: float = 3.0, width: float = 0.01) -> None:
-    """Look at AIM at an angle to the z axis, in the xz plane."""
-    angle = math.radians(degrees)
-    x, y, z = AIM
-    add_camera((x + distance * math.sin(angle), y, z + distance * math.cos(angle)), AIM, width=width)
-
-
-def beer_lambert(distance: float) -> np.ndarray:
-    return np.power(TINT, distance / DEPTH)
-
-
-def tinted(name: str, ior: float, **keywords) -> bpy.types.Material:
-    """A medium that absorbs as :func:`beer_lambert` says."""
-    return nd.new_material(name, ior=ior, transmittance=TINT, transmittance_depth=DEPTH, **keywords)
 
 
 @pytest.mark.parametrize("degrees", [0, 45, 80])

@@ -9,7 +9,6 @@ from scenes import (
     add_camera,
     add_plane,
     add_sphere,
-    assert_mean,
     diffuse,
     emission,
     fresnel,
@@ -19,9 +18,11 @@ from scenes import (
     set_striped_world,
     set_world,
 )
+from significance import assert_mean
 
 import nested_dielectric as nd
 from nested_dielectric.model import parameters, presets
+from nested_dielectric.model.effects import has_effect
 
 SF11 = presets.load_preset("sf11").parameters
 
@@ -68,8 +69,8 @@ def other_value(parameter):
 )
 def test_what_panels_grey_out_does_not_show_in_the_picture(keywords):
     numeric = [each for each in parameters.SOCKETS if each.kind not in ("SHADER", "VECTOR")]
-    values = {each.keyword: keywords.get(each.keyword, each.default) for each in numeric} | {"lamps_by_lobe": False}
-    idle = {each.keyword: other_value(each) for each in numeric if not parameters.has_effect(each, values)}
+    values = {each.keyword: keywords.get(each.keyword, each.default) for each in numeric} | {"lights_by_lobe": False}
+    idle = {each.keyword: other_value(each) for each in numeric if not has_effect(each, values)}
     assert len(idle) > 15
 
     def lit_ball(**more):

@@ -1,8 +1,9 @@
-"""Lamps through the lobe of direct refraction, against Cycles' own rough refraction lit by the same lamps."""
+"""Lights through the lobe of direct refraction, against Cycles' own rough refraction lit by the same lights."""
 
 import bpy
 import numpy as np
 import pytest
+from direct_lights import SIZES, add_light, slab
 from scenes import (
     add,
     add_box,
@@ -20,50 +21,6 @@ from scenes import (
 import nested_dielectric as nd
 from nested_dielectric.scene import lights
 
-SIZES = {
-    "POINT": {"shadow_soft_size": 0.1},
-    "SPOT": {"shadow_soft_size": 0.1, "spot_size": 1.0, "spot_blend": 0.6},
-    "SUN": {"angle": 0.2},
-    "AREA": {"shape": "RECTANGLE", "size": 0.8, "size_y": 0.4},
-    "DISK": {"shape": "ELLIPSE", "size": 0.8, "size_y": 0.4, "spread": 2.0},
-}
-
-
-def add_lamp(kind="POINT", lobe=False):
-    """A lamp behind the slab, which the lobe or rays carry."""
-    light = bpy.data.lights.new("Lamp", "AREA" if kind == "DISK" else kind)
-    light.energy = 3.0 if kind == "SUN" else 300.0
-    light.color = (1.0, 0.6, 0.3)
-    light.exposure = 0.5
-    for name, value in SIZES[kind].items():
-        setattr(light, name, value)
-    lamp = add("Lamp", light, (0.2, 4.0, 0.5))
-    lamp.rotation_euler = (-1.5, 0.1, 0.3)
-    lamp.visible_transmission = not lobe
-    return lamp
-
-
-def slab(**keywords):
-    """A slab of which both faces refract with a roughness of 0.4 and reflect nothing."""
-    new_scene(32)
-    set_world((0.0, 0.0, 0.0))
-    add_camera((0.3, -4, 0.4), (0, 0, 0), angle=20)
-    material = nd.new_material(
-        "Glass",
-        **{
-            "ior": 1.5,
-            "roughness": 0.4,
-            "distribution": "GGX",
-            "shadow_mode": "BLACK",
-            "specular_scale": 0.0,
-            "internal_reflections": False,
-            "direct_roughness_offset": 0.0,
-        }
-        | keywords,
-    )
-    add_box("Slab", (-2, -0.3, -2), (2, 0.3, 2), material)
-    return material
-
 
 def picture(samples=64):
     bpy.context.view_layer.update()
@@ -73,12 +30,12 @@ def picture(samples=64):
 
 def through_slab(kind="POINT", lobe=True, samples=64, **keywords):
     slab(**keywords)
-    add_lamp(kind, lobe)
+    add_light(kind, lobe)
     return picture(samples)
 
 
 @pytest.mark.parametrize("kind", mostly_again(SIZES, 2))
-def test_the_lobe_refracts_as_much_of_a_lamp_as_rays(kind):
+def test_the_lobe_refracts_as_much_of_a_light_as_rays(kind):
     rays, lobe = (through_slab(kind, lobe, samples=512) for lobe in (False, True))
     assert rays.mean() > 0.1
     # 524,288 paths leave 0.2 % on either side.
@@ -92,7 +49,7 @@ def test_the_lobe_refracts_as_much_through_a_rough_ball():
         slab()
         bpy.data.objects.remove(bpy.data.objects["Slab"])
         add_sphere("Ball", 0.6, bpy.data.materials["Glass"])
-        add_lamp("AREA", lobe)
+        add_light("AREA", lobe)
         means.append(picture(1024).mean())
     assert means[0] > 0.1
     # 1,048,576 paths leave 0.3 % on either side.
@@ -100,27 +57,27 @@ def test_the_lobe_refracts_as_much_through_a_rough_ball():
 
 
 def off_slab(lobe=True, samples=16, **keywords):
-    """A lamp before the slab, which reflects and does not refract."""
+    """A light before the slab, which reflects and does not refract."""
     slab(specular_scale=1.0, refraction_scale=0.0, **keywords)
-    lamp = add_lamp()
-    lamp.location = (0.5, -4.0, 1.5)
-    lamp.visible_glossy = not lobe
+    light = add_light()
+    light.location = (0.5, -4.0, 1.5)
+    light.visible_glossy = not lobe
     return picture(samples)
 
 
-def test_the_lobe_reflects_as_much_of_a_lamp_as_rays():
+def test_the_lobe_reflects_as_much_of_a_light_as_rays():
     means = [off_slab(lobe, samples=256).mean() for lobe in (False, True)]
     assert means[0] > 0.01
     assert means[1] == pytest.approx(means[0], rel=1e-2)
 
 
-def test_several_lamps_add_up():
+def test_several_lights_add_up():
     slab()
-    add_lamp("POINT", True)
-    add_lamp("AREA", True).location.x = -0.8
+    add_light("POINT", True)
+    add_light("AREA", True).location.x = -0.8
     together = picture(256).mean()
     slab()
-    add_lamp("AREA", True).location.x = -0.8
+    add_light("AREA", True).location.x = -0.8
     assert together == pytest.approx(picture(256).mean() + through_slab("POINT", samples=256).mean(), rel=2e-2)
 
 
@@ -163,7 +120,7 @@ def test_a_second_lobe_shares_the_light():
     assert not np.allclose(mixed(1.0), mixed(0.0), rtol=0.05)
 
 
-def test_direct_refraction_scales_the_lamps_alone():
+def test_direct_refraction_scales_the_lights_alone():
     assert through_slab(samples=16, direct_refraction=0.5) == pytest.approx(0.5 * through_slab(samples=16), rel=1e-4)
     rays = through_slab(lobe=False, samples=16)
     assert through_slab(lobe=False, samples=16, direct_refraction=0.0) == pytest.approx(rays, rel=1e-4)
@@ -184,25 +141,25 @@ def test_direct_reflection_scales_its_lobe():
 
 def test_what_stands_between_shades_the_lobe():
     slab()
-    add_lamp(lobe=True)
+    add_light(lobe=True)
     add_plane("Shade", 3, (0.2, 2.0, 0.5), (0, -1, 0), diffuse(0.0))
     assert picture(16).max() == 0.0
 
 
-def test_a_lamp_is_followed_where_a_parent_and_an_animation_take_it():
+def test_a_light_is_followed_where_a_parent_and_an_animation_take_it():
     means = []
     for lobe in (False, True):
         slab()
-        lamp = add_lamp("AREA", lobe)
+        light = add_light("AREA", lobe)
         parent = add("Parent", None)
-        lamp.parent = parent
+        light.parent = parent
         for frame, x in ((1, 0.0), (11, 2.0)):
             parent.location.x = x
             parent.rotation_euler.z = 0.3 * x
             parent.keyframe_insert("location", frame=frame)
             parent.keyframe_insert("rotation_euler", frame=frame)
-            lamp.data.energy = 100.0 + 300.0 * x
-            lamp.data.keyframe_insert("energy", frame=frame)
+            light.data.energy = 100.0 + 300.0 * x
+            light.data.keyframe_insert("energy", frame=frame)
         bpy.context.scene.frame_set(1)
         picture(4)
         bpy.context.scene.frame_set(8)
@@ -211,39 +168,15 @@ def test_a_lamp_is_followed_where_a_parent_and_an_animation_take_it():
     assert means[1] == pytest.approx(means[0], rel=1e-2)
 
 
-def test_lamps_are_told_by_what_carries_them():
-    slab()
-    lamp = add_lamp()
-    scene = bpy.context.scene
-    assert lights.light_carriers(scene) == (lights.Carrier("Lamp", "RAYS", "RAYS"),)
-    lamp.visible_transmission = False
-    assert lights.light_carriers(scene) == (lights.Carrier("Lamp", "LOBE", "RAYS"),)
-    lamp.data.normalize = False
-    (carrier,) = lights.light_carriers(scene)
-    assert carrier.refraction == "NOTHING" and "normalized" in carrier.reason
-    assert any(problem.name == "Lamp" and carrier.reason in problem.text for problem in nd.prepare(scene).problems)
-
-
-def test_prepare_lists_the_lamps_of_the_lobe_once():
-    slab()
-    lamp = add_lamp(lobe=True)
-    scene = bpy.context.scene
-    assert any("Lamps" in change for change in nd.prepare(scene).changes)
-    assert not any("Lamps" in change for change in nd.prepare(scene).changes)
-    lamp.visible_transmission = True
-    assert any("Lamps" in change for change in nd.prepare(scene).changes)
-    assert lights.listed_lamps(bpy.context.scene) == []
-
-
 def floor_below(**keywords):
-    """A floor that only light of a lamp above a slab could reach, through the lobe."""
+    """A floor that only light of a light above a slab could reach, through the lobe."""
     new_scene(16)
     set_world((0.0, 0.0, 0.0))
     material = nd.new_material("Glass", ior=1.5, shadow_mode="BLACK", direct_roughness_offset=0.3, **keywords)
     add_box("Slab", (-20, -20, 1.0), (20, 20, 1.2), material)
     add_plane("Floor", 4, (0, 0, 0), (0, 0, 1), diffuse(0.8))
-    lamp = add_lamp(lobe=True)
-    lamp.location = (0.0, 0.0, 3.0)
+    light = add_light(lobe=True)
+    light.location = (0.0, 0.0, 3.0)
     add_camera((0.0, -1.5, 0.7), (0, 0, 0), angle=30)
     return picture(256)
 
@@ -265,9 +198,9 @@ def test_direct_reflection_makes_caustics_that_can_be_switched_off():
         )
         add_box("Mirror", (-20, -20, 2.0), (20, 20, 2.2), material)
         add_plane("Floor", 4, (0, 0, 0), (0, 0, 1), diffuse(0.8))
-        lamp = add_lamp()
-        lamp.location = (0.0, 0.0, 0.7)
-        lamp.visible_glossy = lamp.visible_diffuse = False
+        light = add_light()
+        light.location = (0.0, 0.0, 0.7)
+        light.visible_glossy = light.visible_diffuse = False
         add_camera((0.0, -1.5, 0.7), (0, 0, 0), angle=30)
         return picture(64)
 

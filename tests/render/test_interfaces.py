@@ -7,17 +7,8 @@ import numpy as np
 import pytest
 from mathutils import Matrix
 from references import reference_batches
-from scenes import (
-    add_camera,
-    add_mesh,
-    add_sphere,
-    assert_same_picture,
-    batches,
-    cycles_glass,
-    mostly_again,
-    new_scene,
-    set_striped_world,
-)
+from scenes import add_camera, add_mesh, add_sphere, batches, cycles_glass, mostly_again, new_scene, set_striped_world
+from significance import assert_same_picture
 
 import nested_dielectric as nd
 

@@ -12,8 +12,6 @@ from scenes import (
     add_plane,
     add_sphere,
     add_sun,
-    assert_mean,
-    assert_same_picture,
     batches,
     cycles_glass,
     diffuse,
@@ -25,6 +23,7 @@ from scenes import (
     set_striped_world,
     set_world,
 )
+from significance import assert_mean, assert_same_picture
 
 import nested_dielectric as nd
 from nested_dielectric.scene.materials import dielectric_node
@@ -178,7 +177,7 @@ def test_both_bodies_shine_where_they_are_asked_to(place):
     material = ball()
     add_emission_port(material, place, 0.3)
     material.cycles.emission_sampling = (
-        "NONE"  # or Cycles takes one of them for a lamp that shines straight through the ball
+        "NONE"  # or Cycles takes one of them for a light that shines straight through the ball
     )
     nd.analyse(bpy.context.scene)
     assert_equal(*by_both())
@@ -236,7 +235,7 @@ def test_both_bodies_of_dispersing_media_that_are_cut_show_the_same_picture(keyw
     for on in (False, True):
         set_native(on, osl=not on)
         found.append(batches(1024, 16))
-    assert_same_picture(*found, mean=2e-3, size=8)
+    assert_same_picture(*found, size=8)
 
 
 @pytest.mark.parametrize("name", ["Internal Reflections", "Roughness", "Refraction Scale"])
@@ -271,8 +270,8 @@ def test_a_white_world_stays_white_through_media_that_are_cut():
     pool()
     bpy.data.objects.remove(bpy.data.objects["Floor"])
     set_world()
-    for lamp in list(bpy.data.lights):
-        bpy.data.lights.remove(lamp)
+    for light in list(bpy.data.lights):
+        bpy.data.lights.remove(light)
     set_native(True, osl=False)
     assert np.abs(render(64) - 1.0).max() < 1e-4
 
@@ -296,7 +295,7 @@ def test_media_that_are_cut_look_as_interfaces_split_by_hand():
     glass, water, between = (cycles_glass(ior) for ior in (1.5, 1.33, 1.5 / 1.33))
     _open_box("Glass", (-1, -1, -1), (1, 1, 0.1), glass, hole=0.7, between=between)
     _open_box("Water", (-0.7, -0.7, 0.1), (0.7, 0.7, 0.8), water, open_below=True)
-    assert_same_picture(ours, batches(1024, 16), mean=2e-3, size=8)
+    assert_same_picture(ours, batches(1024, 16), size=8)
 
 
 def _open_box(name, low, high, material, hole=None, between=None, open_below=False) -> None:

@@ -1,47 +1,18 @@
-"""Render passes of direct and indirect refraction and reflection, and the flags of shadow caustics."""
+"""Render passes of direct and indirect refraction and reflection."""
 
 import math
 
 import bpy
 import numpy as np
 import pytest
-from scenes import (
-    add,
-    add_camera,
-    add_plane,
-    add_sphere,
-    diffuse,
-    new_scene,
-    oiio,
-    read_picture,
-    set_striped_world,
-)
+from passes import add_light, glass_before_stripes
+from scenes import add, add_camera, add_plane, add_sphere, diffuse, new_scene, oiio, read_picture
 
 import nested_dielectric as nd
 from nested_dielectric.scene.lights import update_lights
-from nested_dielectric.scene.passes import PASSES, add_compositor, compositors
+from nested_dielectric.scene.passes import PASSES, add_compositor
 
 SAMPLES = 16
-
-
-def add_lamp(location, **visibility):
-    """An area light that shines on the middle of the scene."""
-    light = bpy.data.lights.new("Lamp", "AREA")
-    light.energy = 300.0
-    lamp = add("Lamp", light, location)
-    lamp.rotation_euler = (-lamp.location).to_track_quat("-Z", "Y").to_euler()
-    for attribute, value in visibility.items():
-        setattr(lamp, attribute, value)
-    return lamp
-
-
-def glass_before_stripes(resolution=16):
-    """A camera that sees nothing but a rough glass sphere in a striped world."""
-    scene = new_scene(resolution)
-    set_striped_world()
-    add_sphere("Ball", 1.0, nd.new_material("Glass", ior=1.5, roughness=0.3, shadow_mode="BLACK"))
-    add_camera((0.1, -5, 0.3), (0.03, 0, 0.02), width=1.2)
-    return scene
 
 
 def read_passes(path) -> dict[str, np.ndarray]:
@@ -80,7 +51,7 @@ def assert_sum(picture, passes):
 @pytest.mark.parametrize("seen", [True, False])
 def test_direct_refraction_is_what_lobes_carry_and_the_four_passes_make_the_picture(tmp_path, seen):
     glass_before_stripes()
-    add_lamp((0.5, 3.0, 0.5), visible_transmission=seen, visible_glossy=seen)
+    add_light((0.5, 3.0, 0.5), visible_transmission=seen, visible_glossy=seen)
     picture, passes = render_passes(tmp_path)
     assert tuple(passes) == PASSES
     assert_sum(picture, passes)
@@ -88,7 +59,7 @@ def test_direct_refraction_is_what_lobes_carry_and_the_four_passes_make_the_pict
     if seen:
         assert direct == 0.0
     else:
-        # The lamp is seen through the ball, a hundred times brighter than the stripes.
+        # The light is seen through the ball, a hundred times brighter than the stripes.
         assert direct > 10.0 * passes["Indirect Refraction"].mean()
     assert all(layer.min() >= 0.0 for layer in passes.values())
 
@@ -96,8 +67,8 @@ def test_direct_refraction_is_what_lobes_carry_and_the_four_passes_make_the_pict
 def test_a_lobe_of_direct_reflection_is_direct_specular(tmp_path):
     def render(energy):
         glass_before_stripes()
-        lamp = add_lamp((0.0, -4.0, 3.0), visible_transmission=True, visible_glossy=False)
-        lamp.data.energy = energy
+        light = add_light((0.0, -4.0, 3.0), visible_transmission=True, visible_glossy=False)
+        light.data.energy = energy
         picture, passes = render_passes(tmp_path)
         assert_sum(picture, passes)
         return passes
@@ -113,7 +84,7 @@ def test_a_dispersing_medium_around_another_keeps_the_sum(tmp_path):
     material = nd.new_material("Prism", "sf11", disperse=True, transmittance=(0.8, 0.5, 0.2), transmittance_depth=1.0)
     bpy.data.objects["Ball"].data.materials[0] = material
     add_sphere("Drop", 0.4, nd.new_material("Water", "water", roughness=0.2), priority=1)
-    add_lamp((0.5, 3.0, 0.5), visible_transmission=False)
+    add_light((0.5, 3.0, 0.5), visible_transmission=False)
     nd.prepare(scene)
     picture, passes = render_passes(tmp_path)
     assert passes["Direct Refraction"].mean() > 0.0
@@ -125,24 +96,12 @@ def test_light_of_lobes_on_a_floor_is_no_refraction(tmp_path):
     scene.cycles.caustics_reflective = scene.cycles.caustics_refractive = True
     scene.camera.data.ortho_scale = 6.0
     add_plane("Floor", 20.0, (0, 0, -1), (0, 0, 1), diffuse(0.7))
-    add_lamp((0.5, 3.0, 2.0), visible_transmission=False, visible_glossy=False)
+    add_light((0.5, 3.0, 2.0), visible_transmission=False, visible_glossy=False)
     _, passes = render_passes(tmp_path)
     assert all(layer.min() >= 0.0 for layer in passes.values())
     bottom = {name: layer[-2:].mean() for name, layer in passes.items()}
     assert bottom == dict.fromkeys(PASSES, 0.0)
     assert passes["Direct Refraction"].max() > 0.0
-
-
-def test_passes_are_added_once(tmp_path):
-    scene = glass_before_stripes()
-    scene.render.filepath = str(tmp_path / "shot_####.png")
-    changes = nd.add_passes(scene)
-    assert "Light Group of Ball: Media" in changes
-    assert changes[-1].endswith(f"go to {tmp_path / 'shot_passes'}")
-    (tree,) = compositors(scene)
-    nodes = len(tree.nodes), len(bpy.data.node_groups)
-    assert nd.add_passes(scene) == ()
-    assert compositors(scene) == [tree] and (len(tree.nodes), len(bpy.data.node_groups)) == nodes
 
 
 def test_passes_leave_an_existing_compositor_and_its_picture_alone(tmp_path):
@@ -206,51 +165,6 @@ def test_every_view_layer_that_renders_writes_a_file_of_its_own(tmp_path):
     }
 
 
-def test_passes_need_cycles():
-    scene = glass_before_stripes(8)
-    scene.render.engine = "BLENDER_EEVEE"
-    assert nd.add_passes(scene) == (
-        "scene 'Scene' renders with BLENDER_EEVEE; its passes are Cycles': prepare it first",
-    )
-    assert not compositors(scene) and not scene.objects["Ball"].lightgroup
-
-
-def test_passes_say_what_they_cannot_part():
-    scene = glass_before_stripes(8)
-    add_sphere("Lens", 0.3, bpy.data.materials["Glass"]).lightgroup = "Key"
-    add_plane("Screen", 1.0, (0, 9, 0), (0, -1, 0)).lightgroup = "Media"
-    changes = nd.add_passes(scene)
-    left = nd.add_passes(scene)
-    assert len(left) == 2 and set(left) <= set(changes)
-    assert left[0].startswith("'Lens' is in light group 'Key'")
-    assert left[1].startswith("'Screen' is no medium, but in light group 'Media'")
-    assert scene.objects["Lens"].lightgroup == "Key"
-
-
-def test_compositing_that_the_artist_switched_off_stays_off():
-    scene = glass_before_stripes(8)
-    add_compositor(scene, bpy.data.node_groups.new("Artist's", "CompositorNodeTree"))
-    scene.render.use_compositing = False
-    assert any("Compositing is off" in change for change in nd.add_passes(scene))
-    assert not scene.render.use_compositing
-
-
-@pytest.mark.skipif(not hasattr(bpy.types.Scene, "compositor_effects"), reason="this Blender has one compositor alone")
-def test_passes_go_into_an_effect_that_is_on_in_renders():
-    scene = glass_before_stripes(8)
-    trees = [bpy.data.node_groups.new(name, "CompositorNodeTree") for name in ("Off", "On")]
-    for tree in trees:
-        add_compositor(scene, tree)
-    scene.render.use_compositing = True
-    for effect in scene.compositor_effects:
-        effect.enable_for_render = False
-    assert any("No compositor effect is on" in change for change in nd.add_passes(scene))
-    assert not any(tree.nodes for tree in trees)
-    scene.compositor_effects[1].enable_for_render = True
-    assert nd.add_passes(scene) and trees[1].nodes and not trees[0].nodes
-    assert nd.add_passes(scene) == () and len(scene.compositor_effects) == 2
-
-
 def test_passes_come_with_the_file(tmp_path):
     scene = glass_before_stripes(8)
     scene.cycles.samples = 1
@@ -263,46 +177,8 @@ def test_passes_come_with_the_file(tmp_path):
     assert tuple(read_passes(tmp_path / "picture_passes.exr")) == PASSES
 
 
-def caustic_flags():
-    objects = bpy.context.scene.objects
-    return (
-        {obj.name for obj in objects if obj.cycles.is_caustics_caster},
-        {obj.name for obj in objects if obj.cycles.is_caustics_receiver},
-        {light.name for light in bpy.data.lights if light.cycles.is_caustics_light},
-    )
-
-
-def test_one_switch_sets_the_flags_of_shadow_caustics_and_takes_them_back():
-    scene = glass_before_stripes(8)
-    add_plane("Floor", 6.0, (0, 0, -1), (0, 0, 1), diffuse(0.5))
-    add_plane("Hidden", 6.0, (0, 0, -1), (0, 0, 1), diffuse(0.5)).hide_render = True
-    add_lamp((0, 0, 4))
-    assert nd.set_shadow_caustics(scene) == (
-        "Cast Shadow Caustics of Ball: on",
-        "Receive Shadow Caustics of Floor: on",
-        "Shadow Caustics of Lamp: on",
-        "'Glass' is rough, for which shadow caustics are approximate; set Roughness to 0",
-    )
-    assert caustic_flags() == ({"Ball"}, {"Floor"}, {"Lamp"})
-    assert nd.set_shadow_caustics(scene)[:-1] == ()
-    assert len(nd.set_shadow_caustics(scene, False)) == 3
-    assert caustic_flags() == (set(), set(), set())
-    assert nd.set_shadow_caustics(scene, False) == ()
-
-
-def test_shadow_caustics_say_what_would_be_counted_twice():
-    scene = glass_before_stripes(8)
-    bpy.data.objects["Ball"].data.materials[0] = nd.new_material("Clear", shadow_mode="OUTSIDE_FRESNEL")
-    lamp = add_lamp((0, 0, 4))
-    nd.set_shadow_caustics(scene)
-    (shadow,) = nd.set_shadow_caustics(scene)
-    assert shadow.startswith("'Clear' also lets light straight through")
-    lamp.visible_transmission = False
-    assert nd.set_shadow_caustics(scene)[1].startswith("'Clear' also casts light of lamps by its lobe")
-
-
 def test_caustics_of_a_smooth_ball_are_brighter_with_the_switch_than_its_shadow():
-    """Where a walk leads through the ball, the floor is lit by a lamp without a size, which no path finds."""
+    """Where a walk leads through the ball, the floor is lit by a light without a size, which no path finds."""
     scene = new_scene(8)
     add_sphere("Ball", 0.7, nd.new_material("Glass", ior=1.3, shadow_mode="BLACK"), location=(0, 0, 1))
     add_plane("Floor", 6.0, (0, 0, 0), (0, 0, 1), diffuse(0.5))

@@ -20,6 +20,7 @@ from scenes import (
     render,
     set_striped_world,
 )
+from shapes import SHAPE, egg
 
 import nested_dielectric as nd
 
@@ -43,20 +44,10 @@ def water() -> bpy.types.Material:
     return nd.new_material("Water", ior=1.33, transmittance=(0.9, 0.6, 0.4), transmittance_depth=0.7)
 
 
-SHAPE = Matrix.LocRotScale((0.1, 0.2, -0.1), Matrix.Rotation(0.4, 3, "X").to_quaternion(), (0.9, 0.7, 0.8))
-
-
 def plain(smooth: bool) -> None:
     """The object under test, its shape applied to the mesh."""
     obj = add_mesh("Object", egg, water(), 2, smooth)
     obj.data.transform(SHAPE)
-
-
-def egg(bm) -> None:
-    """An asymmetric closed shape, so that a wrong transform shows."""
-    bmesh.ops.create_icosphere(bm, subdivisions=3, radius=1.0)
-    for vertex in bm.verts:
-        vertex.co *= 1.0 + 0.15 * vertex.co.x
 
 
 def mirrored(smooth: bool) -> None:

@@ -4,12 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from scenes import ROUNDING, add_box, add_camera, new_scene, render, set_half_world
+from scenes import add_box, add_camera, new_scene, render, set_half_world
+from significance import ROUNDING
 
 import nested_dielectric as nd
 from nested_dielectric.model.parameters import PARAMETERS
 from nested_dielectric.model.presets import all_presets
-from nested_dielectric.model.spectra import spectral_table
+from nested_dielectric.model.spectral_tables import spectral_table
 
 PIXELS = 6
 """On a slab's side."""

@@ -152,8 +152,3 @@ def test_what_the_analysis_tells_shows_without_faces_that_are_cut():
     add_camera((0.003, 0.002, 9.0), (0.003, 0.002, 0.0), width=0.002)
     once = fresnel(0.0, 1.0, 1.333)
     assert show()[1] == near(4.0 * once / (1.0 + 3.0 * once))
-
-
-@pytest.mark.quick
-def test_eevee_multiplies_the_colours_of_new_media():
-    assert nd.new_material("Medium").surface_render_method == "BLENDED"

@@ -13,8 +13,6 @@ import pytest
 from nested_dielectric.model import dispersion, presets
 from nested_dielectric.model.parameters import PARAMETERS
 
-pytestmark = [pytest.mark.pure, pytest.mark.quick]
-
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.append(str(ROOT))  # for presets.build
 
@@ -96,10 +94,11 @@ def test_what_absorbs_nothing_is_white_and_twice_the_way_is_the_square_of_the_sp
 @pytest.mark.filterwarnings("ignore:Aligning")
 def test_the_colour_of_a_spectrum_is_that_of_colour_science(media):
     """Its own integration, of ASTM E308, over its own steps; its white differs from the primaries' by 1e-4."""
-    from nested_dielectric.model import spectra
     from presets.build import colours
 
-    colour = spectra._colour()
+    from nested_dielectric.model import colour_science
+
+    colour = colour_science.colour_science()
     for key in ("window_glass", "grey_glass", "amethyst", "dish_soap", "wine_rose"):
         spectrum = colours.transmittance(media[key].absorption, media[key].depth)
         through = colour.SpectralDistribution(dict(zip(colours.WAVELENGTHS, spectrum, strict=True)))

@@ -6,9 +6,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from nested_dielectric.model import dispersion, parameters, presets, spectra
-
-pytestmark = [pytest.mark.pure, pytest.mark.quick]
+from nested_dielectric.model import colour_science, dispersion, parameters, presets
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 """Of red, green and blue of Rec.709."""
@@ -17,8 +15,8 @@ VISIBLE = range(380, 781)
 
 
 def resonances(*terms: tuple[float, float]):
-    """n^2 = 1 + sum of B L^2 / (L^2 - l^2): the form of Malitson, Peter, Dodge, Wood and Nassau."""
-    return lambda um: sqrt(1 + sum(b * um**2 / (um**2 - l**2) for b, l in terms))
+    """n^2 = 1 + sum of B L^2 / (L^2 - r^2): the form of Malitson, Peter, Dodge, Wood and Nassau."""
+    return lambda um: sqrt(1 + sum(b * um**2 / (um**2 - r**2) for b, r in terms))
 
 
 def squares(*terms: tuple[float, float]):
@@ -191,7 +189,7 @@ HUES = [
 
 def dominant_wavelength(key: str) -> float:
     """Of daylight through a preset's depth, nm; the complement's, below 0, where no single wavelength has the hue."""
-    colour = spectra._colour()
+    colour = colour_science.colour_science()
     space = colour.RGB_COLOURSPACES["ITU-R BT.709"]
     xy = colour.XYZ_to_xy(space.matrix_RGB_to_XYZ @ np.array(values(key)["transmittance"]))
     return float(colour.dominant_wavelength(xy, space.whitepoint)[0])

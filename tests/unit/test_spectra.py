@@ -9,20 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from nested_dielectric.model import spectra
-from nested_dielectric.model.spectra import (
-    DISTRIBUTIONS,
-    ENTRIES,
-    GAMUTS,
-    SpectrumError,
-    preview,
-    spectral_table,
-    spectrum,
-)
+from nested_dielectric.model import colour_science, distributions, spectral_tables
+from nested_dielectric.model.colour_science import SpectrumError
+from nested_dielectric.model.distributions import DISTRIBUTIONS, spectrum
+from nested_dielectric.model.gamuts import GAMUTS
+from nested_dielectric.model.spectral_tables import ENTRIES, preview, spectral_table
 
-pytestmark = [pytest.mark.pure, pytest.mark.quick]
-
-colour = spectra._colour()
+colour = colour_science.colour_science()
 
 WORDS = [choice.keyword for choice in DISTRIBUTIONS]
 SPACES = {
@@ -92,7 +85,7 @@ def test_every_table_is_white_on_average_and_runs_from_short_to_long_waves(word,
     # Each weight is rounded to 24 bits, by at most 6e-8 of itself.
     assert np.abs(weights(table).mean(axis=0) - 1.0).max() < 1e-7
     assert np.all(np.diff(table[:, 3]) >= 0.0)
-    assert 380.0 <= table[0, 3] and table[-1, 3] <= 780.0
+    assert table[0, 3] >= 380.0 and table[-1, 3] <= 780.0
     if clamp:
         assert table.min() >= 0.0
 
@@ -176,7 +169,7 @@ def test_mercury_lines_of_a_fluorescent_lamp_stay_sharp():
     assert all(counts[values == np.float32(line)] > 10 for line in MERCURY)
 
 
-@pytest.mark.parametrize("name", [name for name in spectra.illuminant_names() if name.startswith("FL")])
+@pytest.mark.parametrize("name", [name for name in distributions.illuminant_names() if name.startswith("FL")])
 def test_taking_the_lines_out_of_a_lamp_loses_no_power_and_moves_it_by_less_than_a_sample(name):
     samples = colour.SDS_ILLUMINANTS[name]
     light = spectrum(name)
@@ -260,7 +253,7 @@ def test_light_that_no_adaptation_makes_white_is_named(write):
     # Bradford's blue response changes sign at 527.2807 nm.
     path = write("526.9807,0\n527.2807,1\n527.5807,0")
     for clamp in (True, False):
-        with pytest.raises(SpectrumError, match="'light.csv'.*too narrow"):
+        with pytest.raises(SpectrumError, match=r"'light\.csv'.*too narrow"):
             spectral_table(path, clamp_negative=clamp)
 
 
@@ -288,7 +281,7 @@ def test_words_of_gamuts_are_those_of_the_tests():
     assert [choice.keyword for choice in GAMUTS] == ["SCENE", *SPACES]
 
 
-@pytest.mark.parametrize("name", spectra.illuminant_names())
+@pytest.mark.parametrize("name", distributions.illuminant_names())
 def test_every_cie_illuminant_has_a_table(name):
     assert np.abs(weights(spectral_table(name.lower())).mean(axis=0) - 1.0).max() < 1e-7
 
@@ -306,17 +299,17 @@ for name in ("scipy", "matplotlib"):
 sys.modules["model"] = package = types.ModuleType("model")
 package.__path__ = [sys.argv[1]]
 before = numpy.get_printoptions()
-from model import spectra
+from model import spectral_tables, spectrum_plots
 assert "colour" not in sys.modules and "bpy" not in sys.modules
 digest = hashlib.sha256()
 for word in sys.argv[2:]:
-    digest.update(spectra.spectral_table(word).tobytes())
+    digest.update(spectral_tables.spectral_table(word).tobytes())
 assert "colour" in sys.modules
 assert numpy.get_printoptions() == before
 assert not [name for name, module in sys.modules.items() if type(module).__module__ == "unittest.mock"]
 try:
-    spectra.plot("LED", spectra.spectral_table("LED"))
-except spectra.SpectrumError as error:
+    spectrum_plots.plot("LED", spectral_tables.spectral_table("LED"))
+except spectral_tables.SpectrumError as error:
     assert "matplotlib" in str(error)
 print(digest.hexdigest())
 """
@@ -324,7 +317,7 @@ print(digest.hexdigest())
 
 def test_a_process_without_blender_scipy_and_matplotlib_makes_the_same_tables_and_leaves_no_trace():
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", ALONE, Path(spectra.__file__).parent, *WORDS],
+        [sys.executable, "-W", "error", "-c", ALONE, Path(spectral_tables.__file__).parent, *WORDS],
         capture_output=True,
         text=True,
         check=False,

@@ -1,1 +1,1 @@
-"""Buttons."""
+"""Operators: what buttons and menus do, by feature."""

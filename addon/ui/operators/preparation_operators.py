@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import bpy
 
-from ...analysis.analysis import clear_analysis, is_analysed
+from ...analysis.surroundings import clear_analysis
+from ...analysis.validity import is_analysed
 from ...cutting.backends import choose
-from ...cutting.cutting import forget_kept, is_cut, is_set_to_cut, set_cut
-from ...nodes.compatibility import BACKENDS, UnsupportedError, is_native, set_backend
-from ...preparation.live import keep_cut, update_cut
-from ...preparation.preparation import prepare, put_back
+from ...cutting.baked_cut import delete_bake
+from ...cutting.cut_scene import is_cut, is_set_to_cut, set_cut
+from ...nodes.compatibility import UnsupportedError
+from ...nodes.render_with import BACKENDS, is_native, set_backend
+from ...preparation.live import bake_cut, update_cut
+from ...preparation.prepare_scene import prepare, put_back
 from ...preparation.report import last_report
 from ...scene.media import all_objects
 from ..polls import has_media, supported
@@ -20,10 +23,11 @@ MOST_REPORTS = 20
 
 
 class Prepare(bpy.types.Operator):
-    """Set what this scene needs to render nested dielectrics, and look for problems with its media"""
+    """Prepare the scene."""
 
     bl_idname = "nested_dielectric.prepare"
     bl_label = "Prepare Scene"
+    bl_description = "Set what this scene needs to render nested dielectrics, and look for problems with its media"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -52,12 +56,14 @@ class Prepare(bpy.types.Operator):
 
 
 class PutBack(bpy.types.Operator):
-    """Take back what Prepare Scene has changed, as far as it still is as it was set: render settings, moved faces and what
-    media know of each other
-    """
+    """Put back what preparations have changed."""
 
     bl_idname = "nested_dielectric.put_back"
     bl_label = "Put Back"
+    bl_description = (
+        "Take back what Prepare Scene has changed, as far as it still is as it was set: render settings, moved "
+        "faces and what media know of each other"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -74,13 +80,15 @@ class PutBack(bpy.types.Operator):
 
 
 class CutSurfaces(bpy.types.Operator):
-    """Let renders show the surfaces of media cut where they cross, each face between two known media: as fast as meshes that are
-    split by hand. Objects, modifiers and the viewport stay as they are; each frame takes the time to cut it. Again to switch it
-    off
-    """
+    """Switch the cutting of surfaces on or off."""
 
     bl_idname = "nested_dielectric.cut_surfaces"
     bl_label = "Cut Surfaces"
+    bl_description = (
+        "Let renders show the surfaces of media cut where they cross, each face between two known media: as fast "
+        "as meshes that are split by hand. Objects, modifiers and the viewport stay as they are; each frame takes "
+        "the time to cut it. Again to switch it off"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -106,12 +114,14 @@ class CutSurfaces(bpy.types.Operator):
 
 
 class RenderWith(bpy.types.Operator):
-    """What renders the media: the shader in Open Shading Language, which does everything and needs the CPU, or Cycles' own
-    nodes, which are faster and render on every device, and do nearly everything
-    """
+    """Choose what renders the media of the scene."""
 
     bl_idname = "nested_dielectric.render_with"
     bl_label = "Render With"
+    bl_description = (
+        "What renders the media: the shader in Open Shading Language, which does everything and needs the CPU, or "
+        "Cycles' own nodes, which are faster and render on every device, and do nearly everything"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     backend: bpy.props.EnumProperty(
@@ -135,12 +145,14 @@ class RenderWith(bpy.types.Operator):
 
 
 class KeepCut(bpy.types.Operator):
-    """Keep the cut of this frame in the file, so that whoever renders this frame has nothing to cut; other frames are cut as ever.
-    Moving or changing a medium, or this again, takes it back
-    """
+    """Keep the cut of a frame in the file, or take it out."""
 
     bl_idname = "nested_dielectric.keep_cut"
     bl_label = "Keep in File"
+    bl_description = (
+        "Keep the cut of this frame in the file, so that whoever renders this frame has nothing to cut; other "
+        "frames are cut as ever. Moving or changing a medium, or this again, takes it back"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod
@@ -152,10 +164,10 @@ class KeepCut(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         scene = context.scene
-        if forget_kept(scene):
+        if delete_bake(scene):
             self.report({"INFO"}, "Every frame is cut as it is rendered")
             return {"FINISHED"}
-        reason = keep_cut(scene)
+        reason = bake_cut(scene)
         if reason:
             self.report({"WARNING"}, f"Every frame is cut as it is rendered: {reason}")
             return {"CANCELLED"}
@@ -164,10 +176,11 @@ class KeepCut(bpy.types.Operator):
 
 
 class ShowProblem(bpy.types.Operator):
-    """Select what has the problem and bring it into view"""
+    """Show what has a problem."""
 
     bl_idname = "nested_dielectric.show_problem"
     bl_label = "Show Problem"
+    bl_description = "Select what has the problem and bring it into view"
     bl_options = {"UNDO", "INTERNAL"}
 
     name: bpy.props.StringProperty(name="Name", description="An object, or a material", options={"SKIP_SAVE"})
@@ -196,7 +209,7 @@ class ShowProblem(bpy.types.Operator):
 
 
 def _named(scene: bpy.types.Scene, name: str) -> tuple[list[bpy.types.Object], str]:
-    """What to select for a name of a problem, and what to say of it."""
+    """Return what to select for a name of a problem, and what to say of it."""
     obj = scene.objects.get(name)
     if obj is not None:
         return [obj], ""
@@ -213,10 +226,11 @@ def _named(scene: bpy.types.Scene, name: str) -> tuple[list[bpy.types.Object], s
 
 
 class ClearAnalysis(bpy.types.Operator):
-    """Let all media ask the scene what surrounds them while it renders, until it is prepared again"""
+    """Clear the analysis of the scene."""
 
     bl_idname = "nested_dielectric.clear_analysis"
     bl_label = "Clear Analysis"
+    bl_description = "Let all media ask the scene what surrounds them while it renders, until it is prepared again"
     bl_options = {"REGISTER", "UNDO"}
 
     @classmethod

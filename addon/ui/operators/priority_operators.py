@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import bpy
 
-from ...model.parameters import ParameterError
+from ...model.parameter import ParameterError
 from ...scene import media, priorities
-from ..panels.media_list import listed_media, open_or_close
-from ..panels.media_rows import active_line
+from ..media_list import listed_media, open_or_close
+from ..media_rows import active_line
 from ..polls import has_media
 from ..selecting import select_only
 
@@ -22,7 +22,10 @@ class _MediaOperator(bpy.types.Operator):
         return has_media(cls, context)
 
     def medium(self, context: bpy.types.Context, name: str) -> bpy.types.Object:
-        """An object of the scene by its name, or the active one. Raises :class:`ParameterError` if it is no medium."""
+        """Return an object of the scene by its name, or the active one.
+
+        :raises ParameterError: if it is no medium.
+        """
         name = name or getattr(context.object, "name", "")
         obj = next((each for each in listed_media(context.scene).objects if each.name == name), None)
         if obj is None:
@@ -39,12 +42,14 @@ class _MediaOperator(bpy.types.Operator):
 
 
 class PriorityMove(_MediaOperator):
-    """Move a material, or an object with a priority of its own, up or down in the order in which media win over each other.
-    No other priority changes
-    """
+    """Move a medium in the winning order."""
 
     bl_idname = "nested_dielectric.priority_move"
     bl_label = "Move Medium"
+    bl_description = (
+        "Move a material, or an object with a priority of its own, up or down in the order in which media win "
+        "over each other. No other priority changes"
+    )
 
     name: bpy.props.StringProperty(
         name="Object", description="A medium of the scene; what the list has active if empty", options={"SKIP_SAVE"}
@@ -69,7 +74,10 @@ class PriorityMove(_MediaOperator):
         return {"FINISHED"}
 
     def owner(self, context: bpy.types.Context) -> priorities.Owner:
-        """What is to be moved."""
+        """Return what is to be moved.
+
+        :raises ParameterError: if there is no such medium.
+        """
         if self.material:
             rows = listed_media(context.scene).rows
             found = next((row.owner for row in rows if not row.is_own and row.owner.name == self.material), None)
@@ -81,10 +89,11 @@ class PriorityMove(_MediaOperator):
 
 
 class PriorityOwn(_MediaOperator):
-    """Give an object a priority of its own, or return it to that of its material"""
+    """Give an object a priority of its own, or take it."""
 
     bl_idname = "nested_dielectric.priority_own"
     bl_label = "Own Priority"
+    bl_description = "Give an object a priority of its own, or return it to that of its material"
 
     name: bpy.props.StringProperty(
         name="Object", description="A medium of the scene; the active object if empty", options={"SKIP_SAVE"}
@@ -100,12 +109,14 @@ class PriorityOwn(_MediaOperator):
 
 
 class SpaceOut(_MediaOperator):
-    """Give all media of the file new priorities, in steps of ten where there is room, so that one can move between any two. Who
-    wins over whom stays
-    """
+    """Space out all priorities of the file."""
 
     bl_idname = "nested_dielectric.space_out"
     bl_label = "Space Out Priorities"
+    bl_description = (
+        "Give all media of the file new priorities, in steps of ten where there is room, so that one can move "
+        "between any two. Who wins over whom stays"
+    )
 
     def change(self, context: bpy.types.Context) -> set[str]:
         changes, kept = priorities.space_out()
@@ -119,10 +130,11 @@ class SpaceOut(_MediaOperator):
 
 
 class SelectObjects(_MediaOperator):
-    """Select the objects that have their priority from the active row of the list"""
+    """Select the objects of the active row."""
 
     bl_idname = "nested_dielectric.select_objects"
     bl_label = "Select Objects"
+    bl_description = "Select the objects that have their priority from the active row of the list"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -146,10 +158,11 @@ class SelectObjects(_MediaOperator):
 
 
 class OpenMaterial(bpy.types.Operator):
-    """Show the objects of this material in the list, or hide them"""
+    """Open or close a material in the list of media."""
 
     bl_idname = "nested_dielectric.open_material"
     bl_label = "Show Objects of Material"
+    bl_description = "Show the objects of this material in the list, or hide them"
     bl_options = {"INTERNAL"}
 
     number: bpy.props.IntProperty(name="Number", description="The material's number in this session")

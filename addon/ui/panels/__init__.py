@@ -1,1 +1,1 @@
-"""Panels of scenes, media and lights."""
+"""Panels of scenes, media and lights; entries in Blender's own menus; notices."""

@@ -3,17 +3,28 @@
 from __future__ import annotations
 
 import bpy
-import bpy.utils.previews
 import numpy as np
 
 from ...model.dispersion import LINE_C, LINE_D, LINE_F, abbe_number, material_ior
-from ...model.parameters import BY_KEYWORD, DISPERSION_MODELS
-from ...model.spectra import DISTRIBUTIONS, GAMUTS, preview
-from ...nodes.compatibility import achromatic_reason, shows_front_ior
+from ...model.distributions import DISTRIBUTIONS
+from ...model.enumerations import DISPERSION_MODELS
+from ...model.gamuts import GAMUTS
+from ...model.parameters import BY_KEYWORD
+from ...model.spectral_tables import preview
+from ...nodes.compatibility import shows_front_ior
+from ...nodes.render_settings import achromatic_reason
 from ...nodes.spectral_images import digest
-from ...scene.materials import get_parameter, material_table, rendered_node, usable_spectrum_settings
+from ...scene.material_spectra import material_table, usable_spectrum_settings
+from ...scene.materials import get_parameter, rendered_node
 from ..drawing import draw_alert, draw_parameter, draw_text, draw_value
-from ..operators.operators import SELLMEIER_REMEDY, DispersionModel, SellmeierIor, Spectrum, coefficients_ior
+from ..operators.dispersion_operators import (
+    SELLMEIER_REMEDY,
+    DispersionModel,
+    SellmeierIor,
+    Spectrum,
+    coefficients_ior,
+)
+from ..pictures import drawn_picture
 
 MODEL_SOCKETS = {
     "ABBE": ("ior", "abbe"),
@@ -33,14 +44,14 @@ IOR_TOLERANCE = 1e-4
 """How far IOR may be from the index of the Sellmeier coefficients before the panel says so."""
 
 PICTURE_SIZE = (256, 256)
-MAX_PICTURES = 32
+"""Width and height of the picture of a spectral table, pixels."""
 
-_pictures: bpy.utils.previews.ImagePreviewCollection | None = None
-"""Pictures of spectral tables by the tables' digests, while the extension is registered."""
+MAX_PICTURES = 32
+"""Pictures of spectral tables that are kept."""
 
 
 def draw_dispersion(layout: bpy.types.UILayout, context: bpy.types.Context, material: bpy.types.Material) -> None:
-    """A medium's dispersion: its sockets, what they come to, and what keeps colours from showing."""
+    """Draw a medium's dispersion: its sockets, what they come to, and what keeps colours from showing."""
     node = rendered_node(material)
     draw_parameter(layout, material, "disperse")
     if node.inputs["Disperse"].default_value:
@@ -62,7 +73,7 @@ def draw_dispersion(layout: bpy.types.UILayout, context: bpy.types.Context, mate
 
 
 def draw_indices(layout: bpy.types.UILayout, context: bpy.types.Context, node: bpy.types.ShaderNodeGroup) -> None:
-    """A medium's index at Fraunhofer's lines and its Abbe number, or what to do where it has none."""
+    """Draw a medium's index at Fraunhofer's lines and its Abbe number, or what to do where it has none."""
     model = get_parameter(node, BY_KEYWORD["dispersion_model"])
     values = {keyword: get_parameter(node, BY_KEYWORD[keyword]) for keyword in MODEL_SOCKETS[model]}
     values["dispersion_model"] = model
@@ -86,7 +97,7 @@ def draw_indices(layout: bpy.types.UILayout, context: bpy.types.Context, node: b
 
 
 def draw_spectrum(layout: bpy.types.UILayout, material: bpy.types.Material) -> None:
-    """A medium's spectral table: its picture, what it was baked from, and the button to bake another."""
+    """Draw a medium's spectral table: its picture, what it was baked from, and the button to bake another."""
     settings = usable_spectrum_settings(material)
     table = material_table(material)
     if table is not None:
@@ -103,29 +114,12 @@ def draw_spectrum(layout: bpy.types.UILayout, material: bpy.types.Material) -> N
 
 
 def picture(table: np.ndarray) -> int:
-    """The icon that shows a spectral table, drawn on first use."""
-    name = digest(table)
-    if name not in _pictures:
-        if len(_pictures) >= MAX_PICTURES:
-            del _pictures[next(iter(_pictures))]
-        pixels = preview(table, *PICTURE_SIZE)
-        linear = pixels[..., :3]
-        # sRGB's transfer curve (IEC 61966-2-1): icons are not managed.
-        pixels[..., :3] = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1.0 / 2.4) - 0.055)
-        drawn = _pictures.new(name)
-        drawn.image_size = PICTURE_SIZE
-        drawn.image_pixels_float.foreach_set(pixels.ravel())
-    return _pictures[name].icon_id
+    """Return the icon that shows a spectral table, drawn on first use."""
+    return drawn_picture(f"spectrum {digest(table)}", lambda: _encoded(preview(table, *PICTURE_SIZE)), MAX_PICTURES)
 
 
-def open_pictures() -> None:
-    """Make room for the panels' pictures."""
-    global _pictures
-    _pictures = bpy.utils.previews.new()
-
-
-def close_pictures() -> None:
-    """Give back what the panels' pictures take."""
-    global _pictures
-    bpy.utils.previews.remove(_pictures)
-    _pictures = None
+def _encoded(pixels: np.ndarray) -> np.ndarray:
+    """Return pixels with the transfer curve of sRGB (IEC 61966-2-1): icons are not managed."""
+    linear = pixels[..., :3]
+    pixels[..., :3] = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1.0 / 2.4) - 0.055)
+    return pixels

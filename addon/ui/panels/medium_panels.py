@@ -1,5 +1,6 @@
-"""Panels of a medium's parameters, in the 3D view's sidebar and in the Material properties: what artists change first,
-and the rest under Advanced.
+"""Panels of a medium's parameters: what artists change first, and the rest under Advanced.
+
+They stand in the 3D view's sidebar and in the Material properties.
 """
 
 from __future__ import annotations
@@ -8,20 +9,14 @@ from typing import Any
 
 import bpy
 
-from ...model.parameters import (
-    BASIC_KEYWORDS,
-    BASICS,
-    BY_KEYWORD,
-    LAMPS_BY_LOBE,
-    SOCKETS,
-    SPECTRUM_PANEL,
-    has_effect,
-)
+from ...model.effects import has_effect
+from ...model.parameter import BASIC_KEYWORDS, BASICS, LIGHTS_BY_LOBE, SPECTRUM_PANEL
+from ...model.parameters import BY_KEYWORD, SOCKETS
 from ...nodes.animation import is_animated
-from ...scene.lights import carried_lamps
+from ...scene.lights import lobe_lights
 from ...scene.materials import get_parameter, half_distance, parameter_socket, rendered_node
+from ..active_medium import active_medium
 from ..drawing import Sidebar, draw_parameter, draw_text
-from ..operators.operators import active_medium
 from ..presets.preset_menus import draw_fit_depth, draw_presets
 from .dispersion_panels import draw_dispersion, draw_spectrum
 
@@ -32,13 +27,14 @@ HEADINGS = tuple(dict.fromkeys(parameter.panel for parameter in SOCKETS if param
 
 
 def known_values(scene: bpy.types.Scene, material: bpy.types.Material) -> dict[str, Any]:
-    """Return the values of a medium that are the same on every frame, by keyword, and whether lobes carry lamps of the scene:
-    what :func:`~nested_dielectric.parameters.has_effect` goes by.
+    """Return what :func:`~nested_dielectric.model.effects.has_effect` goes by.
+
+    That is the values of a medium that are the same on every frame, by keyword, and whether lobes carry lights of the scene.
     """
     node = rendered_node(material)
-    needed = {need for parameter in SOCKETS for need in parameter.needs} - {LAMPS_BY_LOBE}
+    needed = {need for parameter in SOCKETS for need in parameter.needs} - {LIGHTS_BY_LOBE}
     sockets = {keyword: parameter_socket(material, BY_KEYWORD[keyword].name) for keyword in needed}
-    return {LAMPS_BY_LOBE: bool(carried_lamps(scene))} | {
+    return {LIGHTS_BY_LOBE: bool(lobe_lights(scene))} | {
         keyword: get_parameter(node, BY_KEYWORD[keyword])
         for keyword, socket in sockets.items()
         if socket is not None and socket.node == node and not is_animated(socket.id_data, socket)
@@ -46,7 +42,7 @@ def known_values(scene: bpy.types.Scene, material: bpy.types.Material) -> dict[s
 
 
 def draw_basics(layout: bpy.types.UILayout, context: bpy.types.Context, material: bpy.types.Material) -> None:
-    """The preset, colour, depth, index, roughness and priority of a medium, and what colour and depth come to."""
+    """Draw the preset, colour, depth, index, roughness and priority of a medium, and what colour and depth come to."""
     values = known_values(context.scene, material)
     draw_presets(layout, material.name)
     column = layout.column()
@@ -63,7 +59,7 @@ def draw_basics(layout: bpy.types.UILayout, context: bpy.types.Context, material
 def draw_advanced(
     layout: bpy.types.UILayout, context: bpy.types.Context, material: bpy.types.Material, heading: str
 ) -> None:
-    """The parameters of one panel under Advanced."""
+    """Draw the parameters of one panel under Advanced."""
     if heading == DISPERSION_PANEL:
         draw_dispersion(layout, context, material)
         return
@@ -71,8 +67,8 @@ def draw_advanced(
         draw_spectrum(layout, material)
         return
     values = known_values(context.scene, material)
-    if heading == LOBES_PANEL and not values[LAMPS_BY_LOBE]:
-        draw_text(layout, context, "Rays see all lamps of this scene; Lamps above lets lobes carry them", "INFO")
+    if heading == LOBES_PANEL and not values[LIGHTS_BY_LOBE]:
+        draw_text(layout, context, "Rays see all lights of this scene; Lights above lets lobes carry them", "INFO")
     for parameter in SOCKETS:
         if parameter.panel == heading:
             draw_parameter(layout, material, parameter.keyword, has_effect(parameter, values))
@@ -122,7 +118,7 @@ class _HeadingPanel(_OfMedium):
 
 
 def draw_in_material_properties(self: bpy.types.Panel, context: bpy.types.Context) -> None:
-    """What artists change first, below the material's slots."""
+    """Draw what artists change first, below the material's slots."""
     material = active_medium(context)
     if material is not None:
         draw_basics(self.layout.box(), context, material)
@@ -145,7 +141,7 @@ def _panel(
 
 
 def _headings(place: type, name: str, parent: type[bpy.types.Panel]) -> list[type[bpy.types.Panel]]:
-    """The panels of all parameters but the first, in one place of Blender's window."""
+    """Return the panels of all parameters but the first, in one place of Blender's window."""
     found = []
     for heading in HEADINGS:
         found.append(_panel(place, name, _HeadingPanel, heading, parent))

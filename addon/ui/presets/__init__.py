@@ -1,1 +1,1 @@
-"""Choosing presets: menus, pictures, the asset library."""
+"""Choosing presets: operators, menus, pictures; media that are dragged from the asset library."""

@@ -6,9 +6,10 @@ from math import isclose
 
 import bpy
 
-from ...model.parameters import ParameterError
-from ...scene.materials import DEPTH, dielectric_node, is_preset, measured_depth
-from ...scene.preset_materials import fit_depth, preset_of
+from ...model.parameter import ParameterError
+from ...scene.materials import dielectric_node
+from ...scene.preset_materials import fit_depth, is_preset, preset_of
+from ...scene.preset_values import DEPTH, measured_depth
 from ...scene.shapes import thickness
 from ..preferences import FIT, preference
 
@@ -28,8 +29,9 @@ def note_before(*_: object) -> None:
 
 @bpy.app.handlers.persistent
 def note_appended(*_: object) -> None:
-    """Look at materials that were appended alone once Blender has given them away: what comes with objects is as its file has
-    it.
+    """Note materials that were appended alone, to look at them once Blender has given them away.
+
+    What comes with objects is as its file has it.
     """
     if any(obj.session_uid not in _before for obj in bpy.data.objects) or preference("depth") != FIT:
         return
@@ -49,7 +51,7 @@ def fit_appended() -> None:
 
 
 def forget_appended() -> None:
-    """Look at nothing any more."""
+    """Forget what was appended."""
     _appended.clear()
     if bpy.app.timers.is_registered(fit_appended):
         bpy.app.timers.unregister(fit_appended)

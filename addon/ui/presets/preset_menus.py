@@ -7,7 +7,8 @@ import bpy
 from ...model.presets import GROUPS, Preset
 from ...scene.preset_library import USER_GROUP, Catalogue, catalogue
 from ..preferences import FIT, MEASURED
-from .preset_operators import AssignPreset, DeletePreset, FitDepth, RenamePreset, SavePreset
+from .own_preset_operators import GROUP_ITEMS, DeletePreset, RenamePreset, SavePreset
+from .preset_operators import AssignPreset, FitDepth
 from .preset_pictures import picture
 
 SHOWN = 24
@@ -17,16 +18,14 @@ COLUMNS = 4
 PICTURE_SCALE = 4.0
 """Height of a picture in heights of a button."""
 
-_GROUP_ITEMS = tuple((group, group, "") for group in (*GROUPS, USER_GROUP))
-
 
 def draw_presets(layout: bpy.types.UILayout, text: str = "Assign Preset") -> None:
-    """The button that opens the presets."""
+    """Draw the button that opens the presets."""
     layout.popover(PresetPopover.bl_idname, text=text, icon="MATERIAL")
 
 
 def draw_fit_depth(layout: bpy.types.UILayout) -> None:
-    """The buttons that fit the active medium's colour to the object, or back to what its preset was measured at."""
+    """Draw the buttons that fit the active medium's colour to the object, or back to what its preset was measured at."""
     row = layout.row(align=True)
     for depth, text in ((FIT, "Fit Depth"), (MEASURED, "As Measured")):
         row.operator(FitDepth.bl_idname, text=text).depth = depth
@@ -66,7 +65,7 @@ class PresetPopover(bpy.types.Panel):
 
 
 def draw_found(layout: bpy.types.UILayout, found: Catalogue, presets: list[Preset]) -> None:
-    """Presets to be assigned, each with its picture."""
+    """Draw presets to be assigned, each with its picture."""
     if not presets:
         layout.label(text="No preset is called so" if found.presets else "No presets", icon="INFO")
         return
@@ -78,7 +77,7 @@ def draw_found(layout: bpy.types.UILayout, found: Catalogue, presets: list[Prese
 
 
 def draw_preset(layout: bpy.types.UILayout, preset: Preset, own: bool) -> None:
-    """One preset: its picture, its name as a button, and those that change one of the user's."""
+    """Draw one preset: its picture, its name as a button, and those that change one of the user's."""
     cell = layout.column(align=True)
     cell.template_icon(icon_value=picture(preset), scale=PICTURE_SCALE)
     row = cell.row(align=True)
@@ -89,7 +88,7 @@ def draw_preset(layout: bpy.types.UILayout, preset: Preset, own: bool) -> None:
 
 
 def draw_problem(layout: bpy.types.UILayout, problem: str) -> None:
-    """A file that is no preset, in red."""
+    """Draw what is wrong with a file that is no preset, in red."""
     lines = layout.column(align=True)
     lines.alert = True
     for index, line in enumerate(textwrap.wrap(problem, 70)):
@@ -97,10 +96,11 @@ def draw_problem(layout: bpy.types.UILayout, problem: str) -> None:
 
 
 class PresetMenu(bpy.types.Menu):
-    """Presets by groups"""
+    """The menu of all presets by groups."""
 
     bl_idname = "NESTED_DIELECTRIC_MT_presets"
     bl_label = "Assign Preset"
+    bl_description = "Presets by groups"
     bl_options = {"SEARCH_ON_KEY_PRESS"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -115,7 +115,7 @@ class PresetMenu(bpy.types.Menu):
 
 
 class _GroupMenu:
-    """Presets of the group that the menu is called after"""
+    """The menu of the presets of one group."""
 
     bl_options = {"SEARCH_ON_KEY_PRESS"}
 
@@ -128,7 +128,11 @@ class _GroupMenu:
 
 
 def _group_menu(index: int, group: str) -> type[bpy.types.Menu]:
-    words = {"bl_idname": f"NESTED_DIELECTRIC_MT_group_{index}", "bl_label": group, "__doc__": f"Presets: {group}"}
+    words = {
+        "bl_idname": f"NESTED_DIELECTRIC_MT_group_{index}",
+        "bl_label": group,
+        "bl_description": f"Presets: {group}",
+    }
     return type(f"GroupMenu{index}", (_GroupMenu, bpy.types.Menu), words)
 
 
@@ -138,7 +142,7 @@ GROUP_MENUS = tuple(_group_menu(index, group) for index, group in enumerate((*GR
 class NestedDielectricPresetChoice(bpy.types.PropertyGroup):
     """What the popover shows."""
 
-    group: bpy.props.EnumProperty(name="Group", description="Group of presets to show", items=_GROUP_ITEMS)
+    group: bpy.props.EnumProperty(name="Group", description="Group of presets to show", items=GROUP_ITEMS)
     search: bpy.props.StringProperty(
         name="Search",
         description="Words in the name, the tags or the description of presets, of all groups",

@@ -1,48 +1,31 @@
-"""Operators of presets: giving them to objects, fitting their colour, and keeping presets of the user's own."""
+"""Operators that give presets to objects, and fit their colour to them."""
 
 import bpy
 
-from ...model.files import WriteError
-from ...model.parameters import ParameterError
-from ...model.presets import GROUPS, key_of, renamed
+from ...model.parameter import ParameterError
 from ...scene import media
-from ...scene.materials import measured_depth
-from ...scene.preset_library import (
-    USER_GROUP,
-    catalogue,
-    delete_user_preset,
-    is_built_in,
-    load_preset,
-    save_user_preset,
-)
-from ...scene.preset_materials import (
-    edited_material,
-    fit_depth,
-    linked_parameters,
-    preset_from,
-    preset_material,
-    preset_of,
-)
+from ...scene.preset_library import catalogue, load_preset
+from ...scene.preset_materials import edited_material, fit_depth, preset_material, preset_of
+from ...scene.preset_values import measured_depth
 from ...scene.shapes import thickness
-from ..operators.operators import active_medium
+from ..active_medium import active_medium, has_editable_medium
 from ..polls import supported
 from ..preferences import DEPTHS, EDITED, FIT, MATERIALS, MEASURED, preference
-from .preset_pictures import items, own_items, searched_items
-
-_GROUP_ITEMS = tuple((group, group, "") for group in (*GROUPS, USER_GROUP))
+from .preset_pictures import items, searched_items
 
 
 def targets(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """The selected objects that can be media, or else the active object."""
+    """Return the selected objects that can be media, or else the active object."""
     selected = [obj for obj in context.selected_editable_objects or () if obj.type in media.SOLID_TYPES]
     return selected or [obj for obj in [context.object] if obj is not None and obj.type in media.SOLID_TYPES]
 
 
 class AssignPreset(bpy.types.Operator):
-    """Make the selected objects media of a preset: glass, water, wine, gems and others"""
+    """Assign a preset to objects."""
 
     bl_idname = "nested_dielectric.assign_preset"
     bl_label = "Assign Preset"
+    bl_description = "Make the selected objects media of a preset: glass, water, wine, gems and others"
     bl_options = {"REGISTER", "UNDO"}
     bl_property = "found"
 
@@ -66,7 +49,7 @@ class AssignPreset(bpy.types.Operator):
     def description(cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
         preset = catalogue().presets.get(properties.preset) if properties.is_property_set("preset") else None
         if preset is None:
-            return cls.__doc__
+            return cls.bl_description
         return f"Make the selected objects {preset.name}: {preset.description.rstrip('.')}"
 
     @classmethod
@@ -93,7 +76,7 @@ class AssignPreset(bpy.types.Operator):
         try:
             loaded = load_preset(self.preset)
             edited = edited_material(loaded, objects)
-            material = preset_material(self.preset, objects, fit=self.depth == FIT, use_edited=self.material == EDITED)
+            material = preset_material(loaded, objects, fit=self.depth == FIT, use_edited=self.material == EDITED)
             for obj in objects:
                 media.assign(obj, material)
         except ParameterError as error:
@@ -126,10 +109,13 @@ class AssignPreset(bpy.types.Operator):
 
 
 class FitDepth(bpy.types.Operator):
-    """Set how thick a body is that shows the medium's colour as it is: thinner ones are paler, thicker ones darker"""
+    """Fit the depth of a medium's colour to an object, or to what its preset was measured at."""
 
     bl_idname = "nested_dielectric.fit_depth"
     bl_label = "Fit Depth"
+    bl_description = (
+        "Set how thick a body is that shows the medium's colour as it is: thinner ones are paler, thicker ones darker"
+    )
     bl_options = {"REGISTER", "UNDO"}
 
     depth: bpy.props.EnumProperty(
@@ -151,7 +137,7 @@ class FitDepth(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return poll_editable(cls, context)
+        return has_editable_medium(cls, context)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         material = active_medium(context)
@@ -166,7 +152,10 @@ class FitDepth(bpy.types.Operator):
         return {"FINISHED"}
 
     def wanted(self, obj: bpy.types.Object | None, material: bpy.types.Material) -> float:
-        """The depth to set. Raises :class:`ParameterError` where there is none."""
+        """Return the depth to set, in scene units.
+
+        :raises ParameterError: where there is none.
+        """
         if self.depth == MEASURED:
             preset = preset_of(material)
             if preset is None:
@@ -180,154 +169,4 @@ class FitDepth(bpy.types.Operator):
         return depth
 
 
-def poll_editable(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
-    """Grey an operator out unless the active object is a medium whose material may change."""
-    material = active_medium(context)
-    if material is None:
-        cls.poll_message_set("The active object is no medium; assign a preset to it first")
-    elif not material.is_editable:
-        cls.poll_message_set(f"Material {material.name!r} belongs to a library; make it local first")
-    return material is not None and material.is_editable
-
-
-class SavePreset(bpy.types.Operator):
-    """Keep the active medium as a preset of your own, for all files"""
-
-    bl_idname = "nested_dielectric.save_preset"
-    bl_label = "Save Preset"
-    bl_options = {"REGISTER"}
-
-    name: bpy.props.StringProperty(name="Name", description="What menus call it", options={"SKIP_SAVE"})
-    group: bpy.props.EnumProperty(
-        name="Group", description="Where menus show it", items=_GROUP_ITEMS, default=USER_GROUP, options={"SKIP_SAVE"}
-    )
-    tags: bpy.props.StringProperty(
-        name="Tags", description="Words to find it by, with commas between them", options={"SKIP_SAVE"}
-    )
-    text: bpy.props.StringProperty(name="Description", description="What it is, in a sentence", options={"SKIP_SAVE"})
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if active_medium(context) is None:
-            cls.poll_message_set("The active object is no medium; assign a preset to it first")
-            return False
-        return True
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        material = active_medium(context)
-        made_of = preset_of(material)
-        if not self.name:
-            name = material.name if made_of is None else made_of.name
-            self.name = f"My {name}" if is_built_in("", name) else name
-        if made_of is not None:
-            self.group, self.tags = catalogue().group_of(made_of.key), ", ".join(made_of.tags)
-            self.text = made_of.description
-        return context.window_manager.invoke_props_dialog(self, width=360, confirm_text="Save")
-
-    def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        for name in ("name", "group", "tags", "text"):
-            layout.prop(self, name)
-        try:
-            key = key_of(self.name)
-        except ParameterError:
-            return
-        if is_built_in(key, self.name.strip()):
-            note = layout.row()
-            note.alert = True
-            note.label(text="The extension has a preset of this name; choose another", icon="ERROR")
-        elif key in catalogue().own:
-            layout.label(text=f"Replaces your preset {catalogue().presets[key].name}", icon="INFO")
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        material = active_medium(context)
-        before = catalogue().own
-        name, tags = self.name or material.name, self.tags.split(",")
-        try:
-            preset = preset_from(material, name, self.group, tags, self.text.strip())
-            path = save_user_preset(preset)
-        except (ParameterError, WriteError) as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        for linked in linked_parameters(material):
-            self.report({"WARNING"}, f"{material.name!r}: other nodes make {linked}, which no preset can hold")
-        self.report({"INFO"}, f"Preset {preset.name} {'replaced' if preset.key in before else 'saved'}: {path}")
-        return {"FINISHED"}
-
-
-class _OwnPreset(bpy.types.Operator):
-    """What operators on a preset of the user's share."""
-
-    bl_options = {"INTERNAL"}
-
-    preset: bpy.props.EnumProperty(
-        name="Preset", description="A preset of your own", items=lambda self, context: own_items()
-    )
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if not catalogue().own:
-            cls.poll_message_set("There are no presets of your own; Save Preset makes one of the active medium")
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        try:
-            self.report({"INFO"}, self.change())
-        except (ParameterError, WriteError) as error:
-            self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
-        return {"FINISHED"}
-
-
-class RenamePreset(_OwnPreset):
-    """Give a preset of your own another name"""
-
-    bl_idname = "nested_dielectric.rename_preset"
-    bl_label = "Rename Preset"
-
-    name: bpy.props.StringProperty(name="Name", description="What menus call it", options={"SKIP_SAVE"})
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        self.name = self.name or catalogue().presets[self.preset].name
-        return context.window_manager.invoke_props_dialog(self, confirm_text="Rename")
-
-    def draw(self, context: bpy.types.Context) -> None:
-        self.layout.prop(self, "name")
-
-    def change(self) -> str:
-        old = load_preset(self.preset)
-        new = renamed(old, self.name)
-        if new.key != old.key and new.key in catalogue().own:
-            raise ParameterError(f"{new.name!r} is another preset of yours; choose another name")
-        save_user_preset(new)
-        if new.key != old.key:
-            delete_user_preset(old.key)
-        return f"{old.name} is called {new.name} now"
-
-
-class DeletePreset(_OwnPreset):
-    """Delete a preset of your own. Materials that were made of it stay"""
-
-    bl_idname = "nested_dielectric.delete_preset"
-    bl_label = "Delete Preset"
-
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        return context.window_manager.invoke_confirm(
-            self,
-            event,
-            title="Delete Preset",
-            message=f"{catalogue().presets[self.preset].name} cannot be brought back",
-            confirm_text="Delete",
-            icon="WARNING",
-        )
-
-    def change(self) -> str:
-        name = load_preset(self.preset).name
-        delete_user_preset(self.preset)
-        return f"Preset {name} deleted"
-
-
-CLASSES = (AssignPreset, FitDepth, SavePreset, RenamePreset, DeletePreset)
+CLASSES = (AssignPreset, FitDepth)

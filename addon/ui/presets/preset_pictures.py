@@ -6,12 +6,11 @@ from functools import lru_cache
 from pathlib import Path
 from zlib import crc32
 
-import bpy
-import bpy.utils.previews
 import numpy as np
 
 from ...model.presets import PRESET_FOLDER, Preset
 from ...scene.preset_library import Catalogue, catalogue
+from ..pictures import drawn_picture, loaded_picture
 
 PICTURE_FOLDER = PRESET_FOLDER / "previews"
 """Pictures of the extension's presets; ``make assets`` renders them."""
@@ -19,23 +18,11 @@ PICTURE_FOLDER = PRESET_FOLDER / "previews"
 DRAWN_SIZE = 96
 """Width and height in pixels of a picture that is drawn instead of rendered."""
 
-_pictures: bpy.utils.previews.ImagePreviewCollection | None = None
-"""Pictures of presets, while the extension is registered."""
-
 Item = tuple[str, str, str, int, int]
 
 
-def open_pictures() -> None:
-    """Make room for pictures of presets."""
-    global _pictures
-    _pictures = bpy.utils.previews.new()
-
-
-def close_pictures() -> None:
-    """Give back what pictures of presets take."""
-    global _pictures
-    bpy.utils.previews.remove(_pictures)
-    _pictures = None
+def forget_items() -> None:
+    """Forget the items of menus, which hold numbers of pictures."""
     for kept in (_items, _searched_items, _own_items):
         kept.cache_clear()
 
@@ -47,25 +34,15 @@ def picture_path(key: str) -> Path:
 
 def picture(preset: Preset) -> int:
     """Return the icon that shows a preset: its rendered picture, or a ball of its colour; 0 while there are none."""
-    if _pictures is None:
-        return 0
     path = picture_path(preset.key)
     if preset.key not in catalogue().own and path.is_file():
-        name = preset.key
-        if name not in _pictures:
-            _pictures.load(name, str(path), "IMAGE").icon_size[:]  # read at once: menus do not wait for it
-        return _pictures[name].icon_id
+        return loaded_picture(preset.key, path)
     colour = tuple(preset.parameters.get("transmittance", (1.0, 1.0, 1.0)))
-    name = f"colour {colour}"
-    if name not in _pictures:
-        drawn = _pictures.new(name)
-        drawn.image_size = (DRAWN_SIZE, DRAWN_SIZE)
-        drawn.image_pixels_float.foreach_set(_ball(colour).ravel())
-    return _pictures[name].icon_id
+    return drawn_picture(f"colour {colour}", lambda: _ball(colour))
 
 
 def _ball(colour: tuple[float, float, float]) -> np.ndarray:
-    """A ball of a colour: (size, size, 4) as a screen shows it, the lowest row first."""
+    """Return a ball of a colour: (size, size, 4) float32 as a screen shows it, the lowest row first."""
     y, x = np.mgrid[-1.0 : 1.0 : DRAWN_SIZE * 1j, -1.0 : 1.0 : DRAWN_SIZE * 1j] / 0.9
     radius = np.hypot(x, y)
     way = np.sqrt(np.clip(1.0 - radius**2, 0.0, 1.0))[..., None]
@@ -110,5 +87,5 @@ def _own_items(found: Catalogue) -> tuple[Item, ...]:
 
 
 def _item(preset: Preset, text: str) -> Item:
-    """A row of a menu, with a number that stays as other presets come and go."""
+    """Return a row of a menu, with a number that stays as other presets come and go."""
     return preset.key, text, preset.description.rstrip("."), picture(preset), crc32(preset.key.encode()) >> 1

@@ -1,0 +1,1 @@
+"""The rows of the table of parameters, a module for each part of the node."""

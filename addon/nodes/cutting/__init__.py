@@ -1,0 +1,1 @@
+"""Geometry Nodes that cut the surfaces of media where they cross."""

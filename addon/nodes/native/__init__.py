@@ -1,0 +1,1 @@
+"""The dielectric in Cycles' own nodes, a module for each of its parts."""

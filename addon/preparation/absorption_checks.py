@@ -1,0 +1,124 @@
+"""Checks of what absorbs or scatters light inside media."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ..analysis.extents import SHAPED
+from ..model.contract import BY_VOLUME_SOCKET
+from ..nodes.identity import known_number
+from ..nodes.names import MASK_OUTPUT
+from ..scene.foreign import is_clear, light_box, sends_light_on
+from ..scene.lights import scene_lights
+from ..scene.materials import absorption_coefficients, dielectric_node, has_own_volume, medium_material
+from ..scene.media import get_priority
+from .evaluated_shapes import Containment, Shape, evaluated_shape, sample_points
+from .problem import Problem
+
+
+def _is_tinted(obj: bpy.types.Object) -> bool:
+    """Return whether an object's medium absorbs light."""
+    return max(absorption_coefficients(dielectric_node(medium_material(obj)))) > 0.0
+
+
+def _is_left_to_volume(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
+    """Return whether Cycles' volume absorbs in a medium for all rays, as an analysis has told its material."""
+    socket = dielectric_node(medium_material(obj)).inputs.get(BY_VOLUME_SOCKET)
+    return socket is not None and 0 < socket.default_value == known_number(scene)
+
+
+def tint_problems(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, shapes: list[Shape]) -> list[Problem]:
+    """Return what surfaces do not charge rightly for in a tinted medium that is not left to its volume."""
+    charged = [shape for shape in shapes if len(shape.triangles) and _is_tinted(shape.obj)]
+    problems = [
+        Problem(
+            shape.obj.name,
+            f"is tinted and has the label {slot.material.name!r}, which lets light into it unseen",
+            "make the label an object of its own, a little off the surface",
+        )
+        for shape in charged
+        for slot in shape.obj.material_slots
+        if dielectric_node(slot.material) is None and is_clear(slot.material)
+    ]
+    charged = [shape for shape in charged if not _is_left_to_volume(scene, shape.obj)]
+    problems += [
+        Problem(
+            shape.obj.name,
+            "is tinted and has a volume of its own in its material, whose scattered light is tinted in part",
+            _TO_VOLUME.format(shape.obj.name),
+        )
+        for shape in charged
+        if has_own_volume(medium_material(shape.obj))
+    ]
+    if charged:
+        inside = Containment()
+        for name, points in _transmitting_objects(scene, depsgraph, {shape.obj for shape in shapes}):
+            problems += [
+                Problem(
+                    name,
+                    f"shines, scatters or lets light through inside the tinted {shape.obj.name!r}, which tints that in part",
+                    _TO_VOLUME.format(shape.obj.name),
+                )
+                for shape in charged
+                if inside.any(shape, points)
+            ]
+    return problems
+
+
+_TO_VOLUME = (
+    "prepare the scene; should that not help, let nothing that touches {!r} move, link nothing into its colour, give it a "
+    "priority of its own, and less tint where others win over it"
+)
+
+
+def _transmitting_objects(
+    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, known: set[bpy.types.Object]
+) -> Iterator[tuple[str, np.ndarray]]:
+    """Yield lights and what sends light on, by name, with (n, 3) points of them."""
+    for light in scene_lights(scene):
+        if light.data.type != "SUN" and not light.hide_render:
+            yield light.name, light_box(light).mean(axis=0)[None]
+    for obj in scene.objects:
+        if obj in known or obj.type not in SHAPED or obj.hide_render or not sends_light_on(obj):
+            continue
+        if medium_material(obj) is not None:
+            continue
+        evaluated = obj.evaluated_get(depsgraph)
+        shape = evaluated_shape(evaluated, np.array(evaluated.matrix_world)) if obj.type == "MESH" else None
+        if shape is not None and len(shape.vertices):
+            yield obj.name, sample_points(shape)
+        else:
+            yield (
+                obj.name,
+                np.array([tuple(obj.matrix_world @ Vector(corner)) for corner in obj.bound_box]).mean(axis=0)[None],
+            )
+
+
+def volume_problems(shapes: list[Shape]) -> list[Problem]:
+    """Return volumes that an artist has added to a medium and that go on where another wins, or cannot tell where that is."""
+    problems = []
+    inside = Containment()
+    for shape in shapes:
+        material = medium_material(shape.obj)
+        if not len(shape.triangles) or not has_own_volume(material):
+            continue
+        mask = dielectric_node(material).outputs.get(MASK_OUTPUT)
+        is_masked = mask is not None and mask.is_linked
+        priority = get_priority(shape.obj)
+        for winner in (other for other in shapes if len(other.triangles) and get_priority(other.obj) < priority):
+            if is_masked and winner.obj.matrix_world.determinant() < 0.0:
+                text = f"is mirrored, so the {MASK_OUTPUT!r} of {shape.obj.name!r} takes its inside for its outside"
+                remedy = "apply its scale (Object > Apply > Scale) and recalculate its normals"
+                problems.append(Problem(winner.obj.name, text, remedy))
+            elif not is_masked and (
+                inside.any(shape, sample_points(winner)) or inside.any(winner, sample_points(shape))
+            ):
+                text = f"has a volume of its own in its material that goes on inside {winner.obj.name!r}, which wins over it"
+                problems.append(
+                    Problem(shape.obj.name, text, f"multiply its density by the node's output {MASK_OUTPUT!r}")
+                )
+    return problems
