@@ -39,3 +39,12 @@ def test_the_manual_gives_every_parameter_of_jf_a_home():
 
     manual = (ROOT / "docs" / "coming-from.md").read_text(encoding="utf-8")
     assert [name for name in jf_parameters.JF_PARAMETERS if f"`{name}`" not in manual] == []
+
+
+def test_every_place_that_contributors_are_sent_to_is_there_and_the_words_are_few():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    places = re.findall(r"`((?:addon|osl|presets|tests|benchmarks|docs)/[^`]*)`", text)
+    assert len(places) > 60
+    assert [place for place in places if not list(ROOT.glob(place.rstrip("/")))] == []
+    words = text.split("## Words\n", 1)[1].split("\n\n", 2)[1]
+    assert len(words.splitlines()) <= 20
