@@ -27,24 +27,24 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from nested_dielectric.nodes.names import COORDINATE_NODE, TABLES_NODE
-from nested_dielectric.nodes.osl import COORDINATE_FILE, compiled
-from nested_dielectric.nodes.spectral_tables import set_table
-
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "helpers"))
 
-import bmesh
 import bpy
+
+import bmesh  # isort: skip
 import numpy as np
+from dispersing import APEX, CLEAR, SF11, dispersing_scene, index, material, prism, set_band_world
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from scenes import add_camera, add_mesh, add_sphere, render, set_world
-from test_dispersion import APEX, CLEAR, SF11, dispersing_scene, index, material, prism, set_band_world
 
 from nested_dielectric.model.dispersion import LINE_D, mean_inverse_square_offsets
 from nested_dielectric.model.presets import load_preset
 from nested_dielectric.model.shader_source import inlined_source
+from nested_dielectric.nodes.names import COORDINATE_NODE, TABLES_NODE
+from nested_dielectric.nodes.osl import COORDINATE_FILE, compiled
+from nested_dielectric.nodes.spectral_tables import set_table
 from nested_dielectric.scene.material_spectra import material_table
 from nested_dielectric.scene.materials import dielectric_node
 

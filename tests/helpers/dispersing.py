@@ -1,6 +1,7 @@
 """Scenes of media that split light."""
 
-from scenes import new_scene, set_world
+import numpy as np
+from scenes import add_mesh, new_scene, set_world
 
 import nested_dielectric as nd
 from nested_dielectric.model import dispersion, presets
@@ -8,6 +9,12 @@ from nested_dielectric.nodes import compatibility
 
 SF11 = presets.load_preset("sf11").parameters
 WATER = presets.load_preset("water").parameters
+
+CLEAR = {"specular_scale": 0.0, "internal_reflections": False}
+"""Keywords of a material that reflects nothing."""
+
+APEX = 30.0
+"""Angle between two faces of :func:`prism`, in degrees."""
 
 
 def index(medium, wavelength):
@@ -27,6 +34,22 @@ def material(medium, name="Glass", **keywords):
     """A nested dielectric of a preset's curve that lets no light pass straight."""
     curve = {key: medium[key] for key in ("ior", "dispersion_model", "sellmeier_b", "sellmeier_c")}
     return nd.new_material(name, **{"shadow_mode": "BLACK", "disperse": True} | curve | keywords)
+
+
+def prism(mat, priority=None):
+    """A prism whose first face looks at a camera on the negative Y axis and whose second slopes by the apex angle."""
+    width = 2.0 * np.tan(np.radians(APEX))
+
+    def build(bm):
+        outline = ((-1.0, 0.0), (1.0, 0.0), (-1.0, width))
+        low, high = ([bm.verts.new((x, y, z)) for x, y in outline] for z in (-1.0, 1.0))
+        bm.faces.new(low[::-1])
+        bm.faces.new(high)
+        for i in range(3):
+            j = (i + 1) % 3
+            bm.faces.new((low[i], low[j], high[j], high[i]))
+
+    return add_mesh("Prism", build, mat, priority)
 
 
 def set_band_world():

@@ -3,11 +3,21 @@
 import bpy
 import numpy as np
 import pytest
-from dispersing import CLOSURES_DISPERSE, SF11, WATER, dispersing_scene, index, material, set_band_world
+from dispersing import (
+    APEX,
+    CLEAR,
+    CLOSURES_DISPERSE,
+    SF11,
+    WATER,
+    dispersing_scene,
+    index,
+    material,
+    prism,
+    set_band_world,
+)
 from scenes import (
     add_box,
     add_camera,
-    add_mesh,
     add_plane,
     add_sphere,
     cycles_glass,
@@ -44,25 +54,6 @@ def set_direction_world():
     tree.links.new(scale.outputs[0], tree.nodes["Background"].inputs["Color"])
 
 
-APEX = 30.0
-
-
-def prism(mat, priority=None):
-    """A prism whose first face looks at a camera on the negative Y axis and whose second slopes by the apex angle."""
-    width = 2.0 * np.tan(np.radians(APEX))
-
-    def build(bm):
-        outline = ((-1.0, 0.0), (1.0, 0.0), (-1.0, width))
-        low, high = ([bm.verts.new((x, y, z)) for x, y in outline] for z in (-1.0, 1.0))
-        bm.faces.new(low[::-1])
-        bm.faces.new(high)
-        for i in range(3):
-            j = (i + 1) % 3
-            bm.faces.new((low[i], low[j], high[j], high[i]))
-
-    return add_mesh("Prism", build, mat, priority)
-
-
 def deviation():
     """Degrees by which light from the camera is turned on its way to the world, in the XY plane.
 
@@ -78,9 +69,6 @@ def prism_scene():
     dispersing_scene(8)
     set_direction_world()
     add_camera((0.03, -4.0, 0.02), (0.03, 0.0, 0.02), width=0.5)
-
-
-CLEAR = {"specular_scale": 0.0, "internal_reflections": False}
 
 
 @pytest.mark.parametrize("wavelength", (440.0, 550.0, 660.0))
