@@ -79,3 +79,15 @@ def draw(capfd):
     from ui import draw_panel
 
     return lambda panel, width=220: draw_panel(panel, width, capfd.readouterr)
+
+
+@pytest.fixture
+def preset_folder(monkeypatch, tmp_path):
+    """The user's folder of presets, which is not there yet."""
+    from nested_dielectric.scene import preset_library
+    from nested_dielectric.ui import preferences
+
+    path = tmp_path / "mine"
+    for module in (preset_library, preferences):
+        monkeypatch.setattr(module, "user_folder", lambda: path)
+    return path

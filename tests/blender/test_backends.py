@@ -4,7 +4,7 @@ import bpy
 import numpy as np
 import pytest
 from backends import HERE, ball, crossing, sockets
-from scenes import add_box, add_point_light, add_sphere, mostly_again, new_scene
+from scenes import add_box, add_point_light, add_sphere, mostly_again, new_scene, updated_by
 
 import nested_dielectric as nd
 from nested_dielectric.cutting import (
@@ -91,16 +91,7 @@ def test_what_is_chosen_already_is_not_written_again(scene):
     ball("Lone", 20.0)
     crossing()
     nd.prepare(scene)
-    bpy.context.view_layer.update()
-    updates = []
-    watch = bpy.app.handlers.persistent(
-        lambda scene, depsgraph: updates.extend(each.id.name for each in depsgraph.updates)
-    )
-    bpy.app.handlers.depsgraph_update_post.append(watch)
-    backends.choose(scene)
-    bpy.context.view_layer.update()
-    bpy.app.handlers.depsgraph_update_post.remove(watch)
-    assert not updates
+    assert updated_by(lambda: backends.choose(scene)) == []
 
 
 def test_media_that_ask_again_are_left_to_the_shader(scene):

@@ -4,8 +4,6 @@ import bpy
 import pytest
 from scenes import add, add_box, add_plane, native, new_scene
 
-pytestmark = pytest.mark.quick
-
 
 def nodes_on(obj: bpy.types.Object) -> bpy.types.NodeTree:
     """A new tree of Geometry Nodes on an object, with an output that nothing is linked to."""

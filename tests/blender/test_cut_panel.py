@@ -3,7 +3,7 @@
 import bpy
 import pytest
 from crossing_blocks import add_crossing
-from scenes import new_scene
+from scenes import new_scene, updated_by
 from ui import labels_and_operators
 
 import nested_dielectric as nd
@@ -74,16 +74,7 @@ def test_bringing_it_up_to_date_changes_nothing_where_nothing_has_changed(regist
     add_crossing()
     scene.objects["Block"]["spice"] = [1.0, 2.0]
     nd.prepare(scene, cut=True)
-    bpy.context.view_layer.update()
-    updates = []
-    watch = bpy.app.handlers.persistent(
-        lambda scene, depsgraph: updates.extend(each.id.name for each in depsgraph.updates)
-    )
-    bpy.app.handlers.depsgraph_update_post.append(watch)
-    live.update_cut(scene)
-    bpy.context.view_layer.update()
-    bpy.app.handlers.depsgraph_update_post.remove(watch)
-    assert not updates
+    assert updated_by(lambda: live.update_cut(scene)) == []
 
 
 def test_what_may_change_the_cut_is_looked_at_in_a_window_and_a_selection_is_not(registered, monkeypatch):

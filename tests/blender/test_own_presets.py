@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import bpy
 import pytest
 from preset_menus import NODE, add_active_ball, call, draw_popover, save_wine
-from scenes import new_scene
 
 import nested_dielectric as nd
 from nested_dielectric import cli
@@ -13,23 +12,14 @@ from nested_dielectric.model import presets
 from nested_dielectric.model.parameter import ParameterError
 from nested_dielectric.scene import preset_library, preset_materials
 from nested_dielectric.ui import preferences
-from nested_dielectric.ui.presets import own_preset_operators, preset_operators
+from nested_dielectric.ui.presets import own_preset_operators
 
 SAVE, RENAME, DELETE = (f"{word}_preset" for word in ("save", "rename", "delete"))
 
 
 @pytest.fixture(autouse=True)
-def folder(monkeypatch, tmp_path):
-    """The user's folder, which is not there yet; the extension is registered in an empty scene."""
-    path = tmp_path / "mine"
-    monkeypatch.setattr(preset_library, "user_folder", lambda: path)
-    for module in (preset_operators, preferences):
-        if hasattr(module, "user_folder"):
-            monkeypatch.setattr(module, "user_folder", lambda: path)
-    new_scene()
-    nd.register()
-    yield path
-    nd.unregister()
+def folder(preset_folder, registered):
+    return preset_folder
 
 
 @pytest.fixture

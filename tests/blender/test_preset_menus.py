@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 import pytest
 from preset_menus import NODE, add_active_ball, call, draw_popover, save_wine
-from scenes import add_sphere, new_scene
+from scenes import add_sphere
 
 import nested_dielectric as nd
 from nested_dielectric import registration
@@ -18,17 +18,8 @@ from nested_dielectric.ui.presets import own_preset_operators, preset_menus, pre
 
 
 @pytest.fixture(autouse=True)
-def folder(monkeypatch, tmp_path):
-    """The user's folder, which is not there yet; the extension is registered in an empty scene."""
-    path = tmp_path / "mine"
-    monkeypatch.setattr(preset_library, "user_folder", lambda: path)
-    for module in (preset_operators, preferences):
-        if hasattr(module, "user_folder"):
-            monkeypatch.setattr(module, "user_folder", lambda: path)
-    new_scene()
-    nd.register()
-    yield path
-    nd.unregister()
+def folder(preset_folder, registered):
+    return preset_folder
 
 
 @pytest.fixture

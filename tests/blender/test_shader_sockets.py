@@ -3,14 +3,11 @@
 import re
 
 import bpy
-import pytest
 from scenes import add_point_light, add_sphere, new_scene
 
 import nested_dielectric as nd
 from nested_dielectric.model import contract, shader_source
 from nested_dielectric.nodes import material_version, sockets
-
-pytestmark = pytest.mark.quick
 
 TYPES = {"int": "INT", "float": "VALUE", "color": "RGBA", "vector": "VECTOR", "closure color": "SHADER"}
 VALUES = {"EXTERIOR_UNKNOWN": contract.Exterior.UNKNOWN, "NO_SOLE_PRIORITY": contract.NO_SOLE_PRIORITY}

@@ -1,7 +1,7 @@
 """Telling a second time changes nothing, and clearing leaves no trace."""
 
 import bpy  # before bmesh, which lives inside it
-from scenes import add_mesh, diffuse
+from scenes import add_mesh, diffuse, updated_by
 from told import ball, balls, instance, instanced_by_geometry_nodes, into_collection, medium, ordinary_scene, snapshot
 
 import nested_dielectric as nd
@@ -28,24 +28,11 @@ def test_a_second_analysis_changes_nothing():
     assert {Exterior.BY_OBJECT, Exterior.AIR} <= {
         values[0] for key, values in told.items() if not key.startswith("object ")
     }
-    scene.view_layers[0].update()
-    updates = []
-
-    def note(_, depsgraph) -> None:
-        updates.extend(update.id.name for update in depsgraph.updates)
-
-    bpy.app.handlers.depsgraph_update_post.append(note)
-    try:
-        second = nd.analyse(scene)
-        scene.view_layers[0].update()
-        assert updates == []
-        bpy.data.objects["Bead"].location.x += 0.01  # the handler does work
-        scene.view_layers[0].update()
-        assert updates
-    finally:
-        bpy.app.handlers.depsgraph_update_post.remove(note)
-    assert second == first
+    found = []
+    assert updated_by(lambda: found.append(nd.analyse(scene))) == []
+    assert found == [first]
     assert snapshot() == told
+    assert updated_by(lambda: setattr(bpy.data.objects["Bead"].location, "x", 0.01))  # what is written is noticed
 
 
 def traces() -> list:

@@ -9,6 +9,7 @@ import os
 import re
 import shutil
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy  # before bmesh and mathutils, which live inside it
@@ -296,6 +297,25 @@ def add_point_light(location, power: float, radius: float = 0.05) -> None:
     light.energy, light.shadow_soft_size = power, radius
     light.cycles.is_caustics_light = True
     add("Lamp", light, location)
+
+
+def updated_by(do: Callable[[], object]) -> list[str]:
+    """Names of the data-blocks that Blender has to evaluate again after a call."""
+    layer = bpy.context.view_layer
+    layer.update()
+    names = []
+
+    @bpy.app.handlers.persistent
+    def note(_, depsgraph: bpy.types.Depsgraph) -> None:
+        names.extend(update.id.name for update in depsgraph.updates)
+
+    bpy.app.handlers.depsgraph_update_post.append(note)
+    try:
+        do()
+        layer.update()
+    finally:
+        bpy.app.handlers.depsgraph_update_post.remove(note)
+    return names
 
 
 def fresnel(degrees: float, n1: float, n2: float) -> float:

@@ -9,8 +9,6 @@ from hypothesis import strategies as st
 from nested_dielectric.model import contract, osl_contract, shader_source
 from nested_dielectric.model.parameters import SOCKETS
 
-pytestmark = pytest.mark.pure
-
 SHADERS = sorted(path.name for path in shader_source.OSL_FOLDER.glob("*.osl"))
 FILES = sorted(path for path in shader_source.OSL_FOLDER.iterdir() if path.suffix in (".h", ".osl"))
 CODE = {path.name: shader_source.without_comments(path.read_text(encoding="utf-8")) for path in FILES}

@@ -4,10 +4,6 @@ import ast
 import re
 from pathlib import Path
 
-import pytest
-
-pytestmark = [pytest.mark.pure, pytest.mark.quick]
-
 ROOT = Path(__file__).parents[2]
 NAMED = re.compile(r"`(test_\w+)`")
 

@@ -14,8 +14,6 @@ from nested_dielectric.model.parameter import ParameterError
 from nested_dielectric.model.parameters import PARAMETERS
 from nested_dielectric.model.presets import LONGEST_KEY, Preset, key_of, load_preset, renamed, save_preset
 
-pytestmark = [pytest.mark.pure, pytest.mark.quick]
-
 LONGEST_FILE_NAME = 255
 """Bytes."""
 

@@ -3,7 +3,6 @@
 import json
 
 import property_tests
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -11,8 +10,6 @@ from nested_dielectric.importers.jf_parameters import JF_PARAMETERS, NODE_TYPE, 
 from nested_dielectric.importers.jf_reader import parse_ass, parse_json
 from nested_dielectric.importers.jf_translation import translate
 from nested_dielectric.model.parameters import check_keywords
-
-pytestmark = [pytest.mark.pure, pytest.mark.quick]
 
 words = st.from_regex(r"[A-Za-z_][A-Za-z_0-9]*", fullmatch=True)
 numbers = st.floats(-1e6, 1e6, allow_nan=False)

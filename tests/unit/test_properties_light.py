@@ -27,8 +27,6 @@ from nested_dielectric.model.gamuts import GAMUTS
 from nested_dielectric.model.spectra import WAVELENGTHS
 from nested_dielectric.model.spectral_tables import ENTRIES, spectral_table
 
-pytestmark = [pytest.mark.pure, pytest.mark.quick]
-
 iors = st.floats(1.01, 4.0)
 abbes = st.floats(5.0, 200.0)
 wavelengths = st.floats(*WAVELENGTHS)

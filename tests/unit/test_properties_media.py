@@ -2,7 +2,6 @@
 
 import bpy  # noqa: F401  what is told knows of it
 import property_tests  # noqa: F401  its profile
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -11,8 +10,6 @@ from nested_dielectric.analysis.facts import ExteriorFacts, common_facts
 from nested_dielectric.model.contract import Exterior, Facts, pack_facts, unpack_facts
 from nested_dielectric.model.parameter import MAX_PRIORITY
 from nested_dielectric.scene.priorities import spaced
-
-pytestmark = pytest.mark.quick
 
 # Priorities
 

@@ -12,8 +12,6 @@ from nested_dielectric.geometry.contacts import analyse
 from nested_dielectric.geometry.solids import Body, Solid
 from nested_dielectric.model.contract import Exterior
 
-pytestmark = pytest.mark.quick
-
 BOX = np.array(
     [
         *((0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4)),

@@ -3,14 +3,11 @@
 import math
 
 import property_tests as any_
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from nested_dielectric.model.parameter import ParameterError
 from nested_dielectric.model.parameters import BY_KEYWORD, PARAMETERS, check_keywords
-
-pytestmark = [pytest.mark.pure, pytest.mark.quick]
 
 parameters = st.sampled_from(PARAMETERS)
 limited = st.sampled_from([each for each in PARAMETERS if each.limits is not None])
