@@ -7,10 +7,10 @@ from contextlib import ExitStack
 
 import bpy
 
+from .checking.material_checks import material_problems
 from .nodes.compatibility import blender_note, blender_problem
 from .nodes.render_settings import settings_problem
 from .preparation import live, versions
-from .preparation.material_checks import material_problems
 from .scene.media import media
 from .ui import asset_library, media_list, media_rows, pictures, preferences
 from .ui.operators import (

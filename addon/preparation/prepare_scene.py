@@ -10,6 +10,8 @@ import bpy
 from ..analysis.findings import Found
 from ..analysis.surroundings import clear_analysis, last_found
 from ..analysis.validity import is_analysed
+from ..checking.check import find_problems
+from ..checking.finding import Problem
 from ..cutting import needs
 from ..cutting.backends import BackendChoice
 from ..cutting.cut_plan import CutReport
@@ -24,9 +26,7 @@ from ..scene.lights import update_lights
 from ..scene.material_spectra import refresh_spectrum
 from ..scene.media import all_objects, dispersing_materials, media
 from ..scene.settings import Changed
-from .checks import find_problems
 from .live import analyse, update_cut
-from .problem import Problem
 from .report import Report, forget_report, keep_report, last_report
 from .required_settings import end_random_time, ensure_osl, ensure_random_time
 from .separate_faces import rejoin_separated_faces, separate_coincident_faces

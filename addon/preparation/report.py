@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..analysis.changes import REPORT_PROPERTY
+from ..checking.finding import Problem
 from ..scene.settings import AT_LEAST, LABELS, Changed
-from .problem import Problem
 
 MOST_CHARACTERS = 4000
 """The most characters of problems, and of changes, that are kept."""

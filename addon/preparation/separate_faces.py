@@ -16,13 +16,13 @@ from ..analysis.findings import listed
 from ..analysis.mesh_modifiers import is_offset, keeps_mesh
 from ..analysis.surroundings import last_contacts
 from ..analysis.validity import is_analysed
+from ..checking.finding import Problem
 from ..geometry.contacts import Contact
 from ..nodes.names import OFFSET_GROUP
 from ..scene.media import all_objects
 from .coincident_faces import Move, local_offsets, plan_moves
 from .live import analyse
 from .offset_modifier import add_offset, attribute_name
-from .problem import Problem
 
 PASSES = 8
 """How often faces may move: those beside them may then lie in one plane with others, so all is looked at again."""

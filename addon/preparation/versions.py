@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import bpy
 
 from ..analysis.validity import is_analysed
+from ..checking.finding import Problem
 from ..nodes.closures import arm_dispersion
 from ..nodes.compatibility import require_blender, takes_front_ior
 from ..nodes.group import ensure_group
@@ -21,7 +22,6 @@ from ..scene.new_materials import show_colours_through
 from .group_exchange import exchange_group, move_curves, move_readers, owner_of
 from .leftovers import Leftovers, merge_offset_groups
 from .live import analyse
-from .problem import Problem
 
 
 def update_materials() -> tuple[str, ...]:

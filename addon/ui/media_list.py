@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..analysis.mesh_modifiers import is_offset
+from ..checking.finding import Problem
+from ..checking.material_checks import material_problems
 from ..nodes.lookups import caching_nodes
 from ..nodes.material_version import group_version
-from ..preparation.material_checks import material_problems
-from ..preparation.problem import Problem
 from ..preparation.versions import version_problems
 from ..scene.materials import dielectric_node, may_disperse
 from ..scene.media import all_objects

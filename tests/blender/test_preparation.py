@@ -8,8 +8,8 @@ from scenes import add_box, add_plane, add_sphere
 import nested_dielectric as nd
 from nested_dielectric.analysis.changes import REPORT_PROPERTY
 from nested_dielectric.analysis.validity import is_analysed
+from nested_dielectric.checking.finding import Problem
 from nested_dielectric.preparation.prepare_scene import put_back
-from nested_dielectric.preparation.problem import Problem
 from nested_dielectric.preparation.report import Report, keep_report, last_report
 from nested_dielectric.scene import settings
 from nested_dielectric.scene.materials import dielectric_node

@@ -11,8 +11,8 @@ from furnace import ball_in_furnace
 from scenes import add_mesh, add_sphere, new_scene, set_world
 
 import nested_dielectric as nd
+from nested_dielectric.checking.check import find_problems
 from nested_dielectric.nodes import compatibility, osl
-from nested_dielectric.preparation.checks import find_problems
 
 
 @pytest.mark.parametrize("version", [(5, 1, 2), (4, 5, 0)])

@@ -10,13 +10,13 @@ from scenes import add_box, add_point_light, add_sphere, new_scene
 import nested_dielectric as nd
 from nested_dielectric.analysis.mesh_modifiers import is_offset
 from nested_dielectric.analysis.surroundings import clear_analysis
+from nested_dielectric.checking.check import find_problems
 from nested_dielectric.model.presets import load_preset
 from nested_dielectric.model.spectral_tables import spectral_table
 from nested_dielectric.nodes.lights_group import find_lights
 from nested_dielectric.nodes.material_version import find_group
 from nested_dielectric.nodes.names import OFFSET_ATTRIBUTE, OFFSET_GROUP
 from nested_dielectric.nodes.spectral_tables import uses_table
-from nested_dielectric.preparation.checks import find_problems
 from nested_dielectric.scene import media
 from nested_dielectric.scene.lights import listed_lights
 from nested_dielectric.scene.material_spectra import material_table, spectrum_settings, usable_spectrum_settings

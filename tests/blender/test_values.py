@@ -8,9 +8,9 @@ from odd_values import BOUNDED, INF, NAN, PRIORITIES
 from scenes import add_box, add_camera, add_sphere, new_scene, set_striped_world
 
 import nested_dielectric as nd
+from nested_dielectric.checking.check import find_problems
 from nested_dielectric.model import parameters, shader_source
 from nested_dielectric.model.parameters import BY_KEYWORD, BY_NAME
-from nested_dielectric.preparation.checks import find_problems
 
 
 def test_the_shader_uses_no_number_of_the_table_before_it_is_bounded():

@@ -9,7 +9,21 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = ROOT / "addon"
 
-ROOMS = ("model", "geometry", "nodes", "scene", "analysis", "cutting", "preparation", "importers", "demo", "ui", "")
+ROOMS = (
+    "model",
+    "geometry",
+    "nodes",
+    "scene",
+    "analysis",
+    "cutting",
+    "checking",
+    "preparation",
+    "fixing",
+    "importers",
+    "demo",
+    "ui",
+    "",
+)
 """From the ground up; the last is the package's own folder."""
 
 UI = ("", "operators", "presets", "panels")

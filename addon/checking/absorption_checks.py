@@ -17,7 +17,7 @@ from ..scene.lights import scene_lights
 from ..scene.materials import absorption_coefficients, dielectric_node, has_own_volume, medium_material
 from ..scene.media import get_priority
 from .evaluated_shapes import Containment, Shape, evaluated_shape, sample_points
-from .problem import Problem
+from .finding import Problem
 
 
 def _is_tinted(obj: bpy.types.Object) -> bool:

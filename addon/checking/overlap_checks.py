@@ -12,8 +12,8 @@ from ..geometry.resting import resting_surfaces
 from ..geometry.solids import Solid
 from ..scene.media import SOLID_TYPES, get_priority, is_cut_surface
 from .evaluated_shapes import Containment, Shape, evaluated_shape
+from .finding import Problem
 from .mesh_checks import medium_signature
-from .problem import Problem
 
 NEAR = 1e-4
 """Distance by which to move what touches something else, in diagonals of its box."""

@@ -14,7 +14,7 @@ from ..nodes.problems import node_problems
 from ..scene.materials import dielectric_node, dielectrics, may_disperse
 from ..scene.media import all_objects, get_priority
 from .evaluated_shapes import Shape
-from .problem import Problem
+from .finding import Problem
 
 
 @caching_nodes()

@@ -12,7 +12,7 @@ from ..nodes.places import socket_value
 from ..scene.materials import dielectric_node, medium_material
 from ..scene.media import SOLID_TYPES, get_priority
 from .evaluated_shapes import Shape
-from .problem import Problem
+from .finding import Problem
 
 _EMPTY = {
     "MESH": "give it a closed mesh, or another material",

@@ -9,7 +9,7 @@ from ..model.parameter import MAX_PRIORITY, PRIORITY_PROPERTY
 from ..nodes.animation import curves
 from ..scene.materials import dielectric_node, dielectrics
 from ..scene.media import NO_SOLIDS, get_priority, own_priority
-from .problem import Problem
+from .finding import Problem
 
 
 def kind_problems(depsgraph: bpy.types.Depsgraph) -> list[Problem]:

@@ -7,7 +7,7 @@ import bpy
 from ..scene.lights import light_carriers, listed_lights, lobe_lights
 from ..scene.materials import dielectrics
 from ..scene.media import media
-from .problem import Problem
+from .finding import Problem
 
 
 def dispersion_problems(scene: bpy.types.Scene) -> list[Problem]:

@@ -9,12 +9,12 @@ from ..nodes.lookups import caching_nodes
 from ..scene.media import dispersing_materials, media
 from .absorption_checks import tint_problems, volume_problems
 from .evaluated_shapes import EvaluatedMesh, evaluated_shape
+from .finding import Problem
 from .light_checks import dispersion_problems, light_problems
 from .material_checks import mask_problems, material_problems, value_problems
 from .mesh_checks import mesh_problems, mixture_problems
 from .object_checks import kind_problems, object_problems
 from .overlap_checks import foreign_contact_problems, overlap_problems
-from .problem import Problem
 
 
 @caching_nodes()
