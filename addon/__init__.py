@@ -19,6 +19,8 @@ if "bpy" not in sys.modules:
         import bpy  # noqa: F401
 
 from .analysis.surroundings import clear_analysis
+from .checking.check import check
+from .checking.finding import Finding
 from .model.parameter import ParameterError
 from .nodes.compatibility import UnsupportedError
 from .preparation.live import analyse
@@ -33,12 +35,14 @@ from .scene.passes import add_passes
 from .scene.preset_library import preset_names
 
 __all__ = [
+    "Finding",
     "ParameterError",
     "Preparation",
     "UnsupportedError",
     "add_passes",
     "analyse",
     "assign",
+    "check",
     "clear_analysis",
     "get_priority",
     "light_carriers",

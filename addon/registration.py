@@ -8,6 +8,7 @@ from contextlib import ExitStack
 import bpy
 
 from .checking.material_checks import material_problems
+from .checking.version_checks import version_problems
 from .nodes.compatibility import blender_note, blender_problem
 from .nodes.render_settings import settings_problem
 from .preparation import live, versions
@@ -175,7 +176,7 @@ def mend_materials(*_: object) -> None:
         return
     for change in versions.mend_materials():
         print(f"Nested Dielectric: updated {change}", file=sys.stderr)
-    for problem in versions.version_problems():
+    for problem in version_problems():
         print(f"Nested Dielectric: {problem}", file=sys.stderr)
 
 

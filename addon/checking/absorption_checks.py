@@ -9,6 +9,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..analysis.extents import SHAPED
+from ..analysis.solid_cache import mesh_of
 from ..model.contract import BY_VOLUME_SOCKET
 from ..nodes.identity import known_number
 from ..nodes.names import MASK_OUTPUT
@@ -16,8 +17,10 @@ from ..scene.foreign import is_clear, light_box, sends_light_on
 from ..scene.lights import scene_lights
 from ..scene.materials import absorption_coefficients, dielectric_node, has_own_volume, medium_material
 from ..scene.media import get_priority
-from .evaluated_shapes import Containment, Shape, evaluated_shape, sample_points
-from .finding import Problem
+from .evaluated_shapes import evaluated_shape, sample_points
+from .finding import Finding
+from .inspection import Inspection
+from .kinds import TINT_IN_PART, TINTED_LABEL, VOLUME_IN_WINNER
 
 
 def _is_tinted(obj: bpy.types.Object) -> bool:
@@ -31,11 +34,13 @@ def _is_left_to_volume(scene: bpy.types.Scene, obj: bpy.types.Object) -> bool:
     return socket is not None and 0 < socket.default_value == known_number(scene)
 
 
-def tint_problems(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, shapes: list[Shape]) -> list[Problem]:
+def tint_findings(inspection: Inspection) -> list[Finding]:
     """Return what surfaces do not charge rightly for in a tinted medium that is not left to its volume."""
-    charged = [shape for shape in shapes if len(shape.triangles) and _is_tinted(shape.obj)]
-    problems = [
-        Problem(
+    scene = inspection.scene
+    charged = [shape for shape in inspection.solids if _is_tinted(shape.obj)]
+    findings = [
+        Finding(
+            TINTED_LABEL,
             shape.obj.name,
             f"is tinted and has the label {slot.material.name!r}, which lets light into it unseen",
             "make the label an object of its own, a little off the surface",
@@ -45,8 +50,9 @@ def tint_problems(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, shapes
         if dielectric_node(slot.material) is None and is_clear(slot.material)
     ]
     charged = [shape for shape in charged if not _is_left_to_volume(scene, shape.obj)]
-    problems += [
-        Problem(
+    findings += [
+        Finding(
+            TINT_IN_PART,
             shape.obj.name,
             "is tinted and has a volume of its own in its material, whose scattered light is tinted in part",
             _TO_VOLUME.format(shape.obj.name),
@@ -55,18 +61,18 @@ def tint_problems(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, shapes
         if has_own_volume(medium_material(shape.obj))
     ]
     if charged:
-        inside = Containment()
-        for name, points in _transmitting_objects(scene, depsgraph, {shape.obj for shape in shapes}):
-            problems += [
-                Problem(
+        for name, points in _transmitting_objects(inspection):
+            findings += [
+                Finding(
+                    TINT_IN_PART,
                     name,
                     f"shines, scatters or lets light through inside the tinted {shape.obj.name!r}, which tints that in part",
                     _TO_VOLUME.format(shape.obj.name),
                 )
                 for shape in charged
-                if inside.any(shape, points)
+                if inspection.inside.any(shape, points)
             ]
-    return problems
+    return findings
 
 
 _TO_VOLUME = (
@@ -75,10 +81,10 @@ _TO_VOLUME = (
 )
 
 
-def _transmitting_objects(
-    scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, known: set[bpy.types.Object]
-) -> Iterator[tuple[str, np.ndarray]]:
+def _transmitting_objects(inspection: Inspection) -> Iterator[tuple[str, np.ndarray]]:
     """Yield lights and what sends light on, by name, with (n, 3) points of them."""
+    scene, depsgraph = inspection.scene, inspection.depsgraph
+    known = set(inspection.objects)
     for light in scene_lights(scene):
         if light.data.type != "SUN" and not light.hide_render:
             yield light.name, light_box(light).mean(axis=0)[None]
@@ -88,7 +94,11 @@ def _transmitting_objects(
         if medium_material(obj) is not None:
             continue
         evaluated = obj.evaluated_get(depsgraph)
-        shape = evaluated_shape(evaluated, np.array(evaluated.matrix_world)) if obj.type == "MESH" else None
+        shape = (
+            evaluated_shape(evaluated, np.array(evaluated.matrix_world), mesh_of(obj, evaluated))
+            if obj.type == "MESH"
+            else None
+        )
         if shape is not None and len(shape.vertices):
             yield obj.name, sample_points(shape)
         else:
@@ -98,27 +108,26 @@ def _transmitting_objects(
             )
 
 
-def volume_problems(shapes: list[Shape]) -> list[Problem]:
+def volume_findings(inspection: Inspection) -> list[Finding]:
     """Return volumes that an artist has added to a medium and that go on where another wins, or cannot tell where that is."""
-    problems = []
-    inside = Containment()
-    for shape in shapes:
+    findings = []
+    inside = inspection.inside
+    for shape in inspection.solids:
         material = medium_material(shape.obj)
-        if not len(shape.triangles) or not has_own_volume(material):
+        if not has_own_volume(material):
             continue
         mask = dielectric_node(material).outputs.get(MASK_OUTPUT)
         is_masked = mask is not None and mask.is_linked
         priority = get_priority(shape.obj)
-        for winner in (other for other in shapes if len(other.triangles) and get_priority(other.obj) < priority):
+        for winner in (other for other in inspection.solids if get_priority(other.obj) < priority):
             if is_masked and winner.obj.matrix_world.determinant() < 0.0:
                 text = f"is mirrored, so the {MASK_OUTPUT!r} of {shape.obj.name!r} takes its inside for its outside"
                 remedy = "apply its scale (Object > Apply > Scale) and recalculate its normals"
-                problems.append(Problem(winner.obj.name, text, remedy))
+                findings.append(Finding(VOLUME_IN_WINNER, winner.obj.name, text, remedy))
             elif not is_masked and (
                 inside.any(shape, sample_points(winner)) or inside.any(winner, sample_points(shape))
             ):
                 text = f"has a volume of its own in its material that goes on inside {winner.obj.name!r}, which wins over it"
-                problems.append(
-                    Problem(shape.obj.name, text, f"multiply its density by the node's output {MASK_OUTPUT!r}")
-                )
-    return problems
+                remedy = f"multiply its density by the node's output {MASK_OUTPUT!r}"
+                findings.append(Finding(VOLUME_IN_WINNER, shape.obj.name, text, remedy))
+    return findings

@@ -1,4 +1,4 @@
-"""Meshes of a scene as they are evaluated, for checks: their triangles, whether they are closed, what they hold."""
+"""Media and other things of a scene as they are evaluated, in the world: what they are made of, what they hold."""
 
 from __future__ import annotations
 
@@ -10,88 +10,56 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from ..geometry import meshes
+from ..analysis.solid_cache import EvaluatedMesh
 from ..scene.materials import dielectric_node
-from ..scene.shapes import mesh_triangles
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shape:
-    """An evaluated mesh in world space.
+    """An evaluated mesh at a place in the world.
 
     :param mesh: the same in its own space, one for all objects that show it.
-    :param vertices: (n, 3), scene units; triangles: (m, 3) indices, turned so that normals are those of the object.
+    :param matrix: (4, 4) from there to the world.
     :param materials: nested dielectrics that its faces have.
     """
 
     obj: bpy.types.Object
     mesh: EvaluatedMesh
-    vertices: np.ndarray
-    triangles: np.ndarray
+    matrix: np.ndarray
     materials: tuple[bpy.types.Material, ...]
 
-
-@dataclass(frozen=True, eq=False)
-class EvaluatedMesh:
-    """An evaluated mesh in its own space, and what is wrong with it.
-
-    :param vertices: (n, 3); triangles: (m, 3) indices of vertices.
-    :param slots: material slots of its faces, each once.
-    """
-
-    vertices: np.ndarray
-    triangles: np.ndarray
-    slots: np.ndarray
+    @cached_property
+    def vertices(self) -> np.ndarray:
+        """Return its points in the world, (n, 3) float64, scene units."""
+        return self.mesh.vertices.astype(np.float64) @ self.matrix[:3, :3].T + self.matrix[:3, 3]
 
     @cached_property
-    def open_edges(self) -> int:
-        """Count edges that are not between two faces turned alike; a seam is none."""
-        edges = meshes.open_edge_count(self.triangles)
-        return edges and meshes.open_edge_count(meshes.same_places(self.vertices)[self.triangles])
+    def triangles(self) -> np.ndarray:
+        """Return the corners of its triangles, (m, 3), turned so that normals are those of the object."""
+        return self.mesh.triangles[:, ::-1] if np.linalg.det(self.matrix[:3, :3]) < 0.0 else self.mesh.triangles
 
     @cached_property
-    def is_inverted(self) -> bool:
-        """Return whether its normals point inwards."""
-        return meshes.signed_volume(self.vertices.astype(np.float64), self.triangles) < 0.0
+    def box(self) -> np.ndarray:
+        """Return its lowest and its highest corner in the world, (2, 3)."""
+        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
+
+    @cached_property
+    def size(self) -> float:
+        """Return the diagonal of its box, scene units."""
+        return float(np.linalg.norm(self.box[1] - self.box[0]))
+
+    @cached_property
+    def is_solid(self) -> bool:
+        """Return whether it has faces, and all of it a place."""
+        return len(self.mesh.triangles) > 0 and bool(np.isfinite(self.vertices).all())
 
 
-def evaluated_shape(
-    evaluated: bpy.types.Object, matrix: np.ndarray, known: dict[int, EvaluatedMesh] | None = None
-) -> Shape | None:
-    """Return the shape of an evaluated object at a place in the world; None if it has no mesh.
-
-    :param known: meshes that objects show as they are, by the session's numbers of the meshes; brought up to date.
-    """
+def evaluated_shape(evaluated: bpy.types.Object, matrix: np.ndarray, mesh: EvaluatedMesh) -> Shape:
+    """Return the shape of an evaluated object at a place in the world."""
     obj = evaluated.original
-    shared = known is not None and obj.type == "MESH" and not obj.modifiers and obj.data.shape_keys is None
-    mesh = known.get(obj.data.session_uid) if shared else None
-    if mesh is None:
-        mesh = _evaluated_mesh(evaluated)
-        if mesh is None:
-            return None
-        if shared:
-            known[obj.data.session_uid] = mesh
-    world = mesh.vertices.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
-    triangles = mesh.triangles[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else mesh.triangles
     materials = [slot.material.original if slot.material else None for slot in evaluated.material_slots]
     used = (materials[min(slot, len(materials) - 1)] for slot in mesh.slots) if materials else ()
-    return Shape(obj, mesh, world, triangles, tuple(each for each in dict.fromkeys(used) if dielectric_node(each)))
-
-
-def _evaluated_mesh(evaluated: bpy.types.Object) -> EvaluatedMesh | None:
-    """Return the mesh of an evaluated object; None if it has none."""
-    try:
-        mesh = evaluated.to_mesh()
-    except RuntimeError:
-        return None
-    if mesh is None:
-        return None
-    try:
-        slots = np.zeros(len(mesh.polygons), dtype=np.int32)
-        mesh.polygons.foreach_get("material_index", slots)
-        return EvaluatedMesh(*mesh_triangles(mesh), np.unique(slots))
-    finally:
-        evaluated.to_mesh_clear()
+    return Shape(obj, mesh, matrix, tuple(each for each in dict.fromkeys(used) if dielectric_node(each)))
 
 
 _SAMPLES = 256

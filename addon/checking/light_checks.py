@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-import bpy
-
 from ..scene.lights import light_carriers, listed_lights, lobe_lights
 from ..scene.materials import dielectrics
-from ..scene.media import media
-from .finding import Problem
+from ..scene.media import dispersing_materials, media
+from .finding import Finding
+from .inspection import Inspection
+from .kinds import LIGHTS_CHANGED, LINKED_LOBES, LOST_LIGHT, PORTAL, VECTOR_PASS
 
 
-def dispersion_problems(scene: bpy.types.Scene) -> list[Problem]:
-    """Return what else uses the portals and the motion blur that carry wavelengths."""
-    problems = [
-        Problem(
+def dispersion_findings(inspection: Inspection) -> list[Finding]:
+    """Return what else uses the portals and the motion blur that carry wavelengths, where media disperse."""
+    scene = inspection.scene
+    if not dispersing_materials(scene):
+        return []
+    findings = [
+        Finding(
+            PORTAL,
             obj.name,
             f"has a Ray Portal in material {slot.material.name!r}; light through it is taken for a single colour by media",
             "remove it, or switch Disperse off in this scene",
@@ -23,8 +27,9 @@ def dispersion_problems(scene: bpy.types.Scene) -> list[Problem]:
         if slot.material is not None and slot.material.node_tree is not None
         if any(node.bl_idname == "ShaderNodeBsdfRayPortal" for node in slot.material.node_tree.nodes)
     ]
-    problems += [
-        Problem(
+    findings += [
+        Finding(
+            VECTOR_PASS,
             layer.name,
             "has a Vector pass, which Cycles leaves out with the motion blur that dispersion needs",
             "render the pass with Disperse and motion blur off",
@@ -32,13 +37,17 @@ def dispersion_problems(scene: bpy.types.Scene) -> list[Problem]:
         for layer in scene.view_layers
         if layer.use_pass_vector
     ]
-    return problems
+    return findings
 
 
-def light_problems(scene: bpy.types.Scene) -> list[Problem]:
-    """Return lights whose light gets lost between rays and lobes."""
-    problems = [
-        Problem(
+def light_findings(inspection: Inspection) -> list[Finding]:
+    """Return lights whose light gets lost between rays and lobes, where there are media."""
+    scene = inspection.scene
+    if not inspection.objects:
+        return []
+    findings = [
+        Finding(
+            LOST_LIGHT,
             transport.light,
             "is left out of refraction or reflection by its Ray Visibility, and no lobe carries it, because "
             f"{transport.reason}",
@@ -54,8 +63,9 @@ def light_problems(scene: bpy.types.Scene) -> list[Problem]:
         for _, material in dielectrics(obj)
         if material.library is not None and carried
     }
-    problems += [
-        Problem(
+    findings += [
+        Finding(
+            LINKED_LOBES,
             obj.name,
             f"has the linked material {material.name!r}, whose lobes carry none of this scene's lights, such as "
             f"{carried[0].name!r}",
@@ -64,11 +74,12 @@ def light_problems(scene: bpy.types.Scene) -> list[Problem]:
         for material, obj in linked.items()
     ]
     if listed_lights(scene) != carried:
-        problems.append(
-            Problem(
+        findings.append(
+            Finding(
+                LIGHTS_CHANGED,
                 scene.name,
                 "has other lights for direct refraction and reflection than its media know",
                 "prepare it again",
             )
         )
-    return problems
+    return findings

@@ -13,12 +13,18 @@ from ..nodes.places import ignores_masks
 from ..nodes.problems import node_problems
 from ..scene.materials import dielectric_node, dielectrics, may_disperse
 from ..scene.media import all_objects, get_priority
-from .evaluated_shapes import Shape
-from .finding import Problem
+from .finding import Finding
+from .inspection import Inspection
+from .kinds import NODES, UNMASKED_MIX, VALUE_LIMIT
+
+
+def node_findings(inspection: Inspection) -> list[Finding]:
+    """Return what is wrong with the nodes of a scene's materials."""
+    return material_problems(inspection.scene)
 
 
 @caching_nodes()
-def material_problems(scene: bpy.types.Scene) -> list[Problem]:
+def material_problems(scene: bpy.types.Scene) -> list[Finding]:
     """Return what is wrong with the nodes of a scene's materials, each named by the first object that has it."""
     users: dict[bpy.types.Material, bpy.types.Object] = {}
     for obj in sorted(all_objects(scene), key=lambda obj: obj.name_full):
@@ -26,19 +32,19 @@ def material_problems(scene: bpy.types.Scene) -> list[Problem]:
             if slot.material is not None:
                 users.setdefault(slot.material, obj)
     return [
-        Problem(obj.name, f"has {text}", remedy)
+        Finding(NODES, obj.name, f"has {text}", remedy)
         for material, obj in users.items()
         for text, remedy in node_problems(material)
     ]
 
 
-def value_problems(objects: list[bpy.types.Object]) -> list[Problem]:
+def value_findings(inspection: Inspection) -> list[Finding]:
     """Return values of sockets beyond their limits, which only a script can set.
 
     The shader takes the nearest within the limits, or the default.
     """
     problems = []
-    users = {material: obj for obj in reversed(objects) for _, material in dielectrics(obj)}
+    users = {material: obj for obj in reversed(inspection.objects) for _, material in dielectrics(obj)}
     for material, obj in users.items():
         node = dielectric_node(material)
         for parameter in SOCKETS:
@@ -49,7 +55,8 @@ def value_problems(objects: list[bpy.types.Object]) -> list[Problem]:
             counts = parameter.bounded(value)
             if not np.array_equal(np.float32(value), np.float32(counts)):
                 problems.append(
-                    Problem(
+                    Finding(
+                        VALUE_LIMIT,
                         obj.name,
                         f"has {_text_of(value)} for {parameter.name!r} in material {material.name!r}, "
                         f"which counts as {_text_of(counts)}",
@@ -66,8 +73,9 @@ def _text_of(value: float | Sequence[float]) -> str:
     return f"({', '.join(f'{component:.4g}' for component in tuple(value)[:3])})"
 
 
-def mask_problems(shapes: list[Shape]) -> list[Problem]:
+def mask_findings(inspection: Inspection) -> list[Finding]:
     """Return other shaders that show where the surface that they are mixed into does not exist."""
+    shapes = inspection.shapes
     used = {material for shape in shapes for material in shape.materials}
     blind = {material for material in used if ignores_masks(material)}
     if not blind:
@@ -87,5 +95,5 @@ def mask_problems(shapes: list[Shape]) -> list[Problem]:
         wrong += ["count twice where light is split"] if any(map(may_disperse, mixed)) else []
         if wrong:
             text = f"mixes other shaders into material {mixed[0].name!r}, which {' and '.join(wrong)}"
-            problems.append(Problem(shape.obj.name, text, remedy))
+            problems.append(Finding(UNMASKED_MIX, shape.obj.name, text, remedy))
     return problems

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import bpy
 import numpy as np
 
@@ -12,7 +14,9 @@ from ..nodes.places import socket_value
 from ..scene.materials import dielectric_node, medium_material
 from ..scene.media import SOLID_TYPES, get_priority
 from .evaluated_shapes import Shape
-from .finding import Problem
+from .finding import Finding
+from .inspection import Inspection
+from .kinds import INWARD_NORMALS, METABALL_FAMILY, NO_FACES, NOT_FINITE, OPEN_MESH, SEVERAL_MEDIA
 
 _EMPTY = {
     "MESH": "give it a closed mesh, or another material",
@@ -42,31 +46,41 @@ _INVERTED = {
 """Remedies by the object's type, as in the two tables above."""
 
 
-def mesh_problems(shape: Shape, shapes: list[Shape]) -> list[Problem]:
+def mesh_findings(inspection: Inspection) -> Iterator[Finding]:
+    """Yield what is wrong with the meshes of media."""
+    for shape in inspection.shapes:
+        yield from _shape_findings(shape, inspection.shapes)
+        yield from _mixture_findings(shape)
+
+
+def _shape_findings(shape: Shape, shapes: list[Shape]) -> list[Finding]:
     """Return the first thing that is wrong with the mesh of a shape among those of a scene, or nothing."""
     obj, name = shape.obj, shape.obj.name
     if len(shape.triangles) == 0:
         family = next((other.obj for other in shapes if is_relative(other.obj, obj) and len(other.triangles)), None)
         if family is not None:
-            return _family_problems(obj, family)
-        return [Problem(name, "has no faces", _EMPTY[obj.type])] if obj.type in SOLID_TYPES else []
+            return _family_findings(obj, family)
+        return [Finding(NO_FACES, name, "has no faces", _EMPTY[obj.type])] if obj.type in SOLID_TYPES else []
     if not np.isfinite(shape.vertices).all():
         return [
-            Problem(
-                name, "has coordinates that are not numbers", "remove those vertices, or the modifier that makes them"
+            Finding(
+                NOT_FINITE,
+                name,
+                "has coordinates that are not numbers",
+                "remove those vertices, or the modifier that makes them",
             )
         ]
     edges = shape.mesh.open_edges
     if edges:
         text = f"is not closed or its faces are turned against each other ({edges} edges)"
-        return [Problem(name, text, _OPEN.get(obj.type, CONVERT))]
+        return [Finding(OPEN_MESH, name, text, _OPEN.get(obj.type, CONVERT))]
     if shape.mesh.is_inverted:
         remedy = _INVERTED.get(obj.type, f"{CONVERT} and recalculate its normals")
-        return [Problem(name, "has its normals pointing inwards", remedy)]
+        return [Finding(INWARD_NORMALS, name, "has its normals pointing inwards", remedy)]
     return []
 
 
-def _family_problems(obj: bpy.types.Object, family: bpy.types.Object) -> list[Problem]:
+def _family_findings(obj: bpy.types.Object, family: bpy.types.Object) -> list[Finding]:
     """Return what is wrong with a metaball that merges into another one.
 
     Metaballs of one name are one object, which the first of them gives its material and its priority.
@@ -74,7 +88,8 @@ def _family_problems(obj: bpy.types.Object, family: bpy.types.Object) -> list[Pr
     if get_priority(obj) == get_priority(family) and medium_signature(obj) == medium_signature(family):
         return []
     return [
-        Problem(
+        Finding(
+            METABALL_FAMILY,
             obj.name,
             f"merges into the metaball {family.name!r}, whose medium and priority are not its own",
             "give it the same, or a name of its own that differs in more than a number",
@@ -82,13 +97,14 @@ def _family_problems(obj: bpy.types.Object, family: bpy.types.Object) -> list[Pr
     ]
 
 
-def mixture_problems(shape: Shape) -> list[Problem]:
+def _mixture_findings(shape: Shape) -> list[Finding]:
     """Return the problem of an object with several media: which of them it is inside cannot be told by faces."""
     media_of = {_neighbour_values(material): material.name for material in shape.materials}
     if len(media_of) < 2:
         return []
     return [
-        Problem(
+        Finding(
+            SEVERAL_MEDIA,
             shape.obj.name,
             f"has {len(media_of)} media in one object, {' and '.join(map(repr, media_of.values()))}",
             "separate them (Edit Mode > Mesh > Separate > By Material) and close each"

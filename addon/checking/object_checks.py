@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import bpy
 
 from ..model.contract import MATERIAL_SLOTS
@@ -9,11 +11,14 @@ from ..model.parameter import MAX_PRIORITY, PRIORITY_PROPERTY
 from ..nodes.animation import curves
 from ..scene.materials import dielectric_node, dielectrics
 from ..scene.media import NO_SOLIDS, get_priority, own_priority
-from .finding import Problem
+from .finding import Finding
+from .inspection import Inspection
+from .kinds import BAD_PRIORITY, NO_INSIDE, SLOT_LIMIT
 
 
-def kind_problems(depsgraph: bpy.types.Depsgraph) -> list[Problem]:
+def kind_findings(inspection: Inspection) -> list[Finding]:
     """Return what has a nested dielectric and no inside: objects, and what modifiers make of them."""
+    depsgraph = inspection.depsgraph
     found = {}
     for instance in depsgraph.object_instances:
         obj = instance.object
@@ -23,13 +28,13 @@ def kind_problems(depsgraph: bpy.types.Depsgraph) -> list[Problem]:
     for obj in depsgraph.scene.objects:
         if any(_is_hair(obj.original, system) for system in obj.particle_systems):
             found[obj.original] = "CURVES"
-    problems = []
+    findings = []
     for obj, kind in found.items():
         what, remedy = NO_SOLIDS[kind]
         text = f"is {what}" if obj.type == kind else f"makes {what} of a nested dielectric"
         remedy = f"{remedy}, or give it another material"
-        problems.append(Problem(obj.name, f"{text}, which Cycles knows no inside of", remedy))
-    return problems
+        findings.append(Finding(NO_INSIDE, obj.name, f"{text}, which Cycles knows no inside of", remedy))
+    return findings
 
 
 def _is_hair(obj: bpy.types.Object, system: bpy.types.ParticleSystem) -> bool:
@@ -40,32 +45,41 @@ def _is_hair(obj: bpy.types.Object, system: bpy.types.ParticleSystem) -> bool:
     return dielectric_node(slots[min(settings.material, len(slots)) - 1].material) is not None
 
 
-def object_problems(obj: bpy.types.Object) -> list[Problem]:
-    """Return what is wrong with the priority and the slots of an object."""
-    problems = _priority_problems(obj)
+def object_findings(inspection: Inspection) -> Iterator[Finding]:
+    """Yield what is wrong with the priorities and the slots of media."""
+    for obj in inspection.objects:
+        yield from _priority_findings(obj)
+        yield from _slot_findings(obj)
+
+
+def _slot_findings(obj: bpy.types.Object) -> list[Finding]:
+    """Return the slots of an object that neighbours do not see."""
+    findings = []
     for slot, _ in dielectrics(obj):
         if slot >= MATERIAL_SLOTS:
-            problems.append(
-                Problem(
+            findings.append(
+                Finding(
+                    SLOT_LIMIT,
                     obj.name,
                     f"has a nested dielectric in slot {slot + 1}, where its neighbours do not look",
                     f"move it to one of the first {MATERIAL_SLOTS} slots",
                 )
             )
-    return problems
+    return findings
 
 
-def _priority_problems(obj: bpy.types.Object) -> list[Problem]:
+def _priority_findings(obj: bpy.types.Object) -> list[Finding]:
     """Return what is wrong with an object's own priority: no whole number, or keyframes beyond what counts."""
     value = obj.get(PRIORITY_PROPERTY)
     if value is None:
         return []
-    problems = []
+    findings = []
     own = own_priority(obj)
     if own is None or type(value) is not int:
         counts = f"counts as {own}" if own is not None else f"does not count: {get_priority(obj)}, its material's, does"
-        problems.append(
-            Problem(
+        findings.append(
+            Finding(
+                BAD_PRIORITY,
                 obj.name,
                 f"has the custom property {PRIORITY_PROPERTY!r} with no whole number from 0 to {MAX_PRIORITY} in it, "
                 f"which {counts}",
@@ -75,11 +89,12 @@ def _priority_problems(obj: bpy.types.Object) -> list[Problem]:
     path = f'["{PRIORITY_PROPERTY}"]'
     keys = [key for curve in curves(obj.animation_data) if curve.data_path == path for key in curve.keyframe_points]
     if any(not 0.0 <= key.co[1] <= MAX_PRIORITY for key in keys):
-        problems.append(
-            Problem(
+        findings.append(
+            Finding(
+                BAD_PRIORITY,
                 obj.name,
                 f"has keyframes of its priority beyond 0 to {MAX_PRIORITY}, where its material's counts",
                 "move them, or delete them",
             )
         )
-    return problems
+    return findings

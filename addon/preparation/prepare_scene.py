@@ -10,8 +10,9 @@ import bpy
 from ..analysis.findings import Found
 from ..analysis.surroundings import clear_analysis, last_found
 from ..analysis.validity import is_analysed
-from ..checking.check import find_problems
-from ..checking.finding import Problem
+from ..checking.check import check
+from ..checking.finding import Finding, severe
+from ..checking.kinds import MUST_ASK, NATIVE_LIMIT, SPECTRAL_TABLE, Severity
 from ..cutting import needs
 from ..cutting.backends import BackendChoice
 from ..cutting.cut_plan import CutReport
@@ -31,7 +32,7 @@ from .report import Report, forget_report, keep_report, last_report
 from .required_settings import end_random_time, ensure_osl, ensure_random_time
 from .separate_faces import rejoin_separated_faces, separate_coincident_faces
 from .upkeep import choose_bodies
-from .versions import mend_materials, version_problems
+from .versions import mend_materials
 
 NO_MEDIA = "No media: assign a preset first"
 
@@ -40,17 +41,18 @@ NO_MEDIA = "No media: assign a preset first"
 class Preparation:
     """What :func:`prepare` found and changed.
 
-    :param changes: in sentences; problems: those that it left.
+    :param changes: in sentences; problems: those that it left; notes: what else an artist may want to know.
     :param found: what the media of the scene now know of each other; media: how many there are.
     :param cut: which of them are rendered cut; chosen: which body of their materials renders them.
     """
 
     changes: tuple[str, ...]
-    problems: tuple[Problem, ...]
+    problems: tuple[Finding, ...]
     found: Found = field(default_factory=Found)
     media: int = 0
     cut: CutReport = field(default_factory=CutReport)
     chosen: BackendChoice = field(default_factory=BackendChoice)
+    notes: tuple[Finding, ...] = ()
 
     @property
     def headline(self) -> str:
@@ -63,7 +65,8 @@ class Preparation:
         lines += [f"rendered: {line}" for line in str(self.chosen).splitlines()]
         lines += [f"cut: {line}" for line in str(self.cut).splitlines()]
         lines += [f"analysis: {line}" for line in str(self.found).splitlines()]
-        return "\n".join(lines + [f"warning: {problem}" for problem in self.problems])
+        lines += [f"warning: {problem}" for problem in self.problems]
+        return "\n".join(lines + [f"note: {note}" for note in self.notes])
 
 
 def headline(media: int, problems: int) -> str:
@@ -103,10 +106,9 @@ def prepare(scene: bpy.types.Scene, cut: bool | None = None, backend: str | None
         preparation = _prepare(scene, changed, stays)
     else:
         back = settings.go_back(scene, changed)
-        preparation = Preparation(
-            tuple(stays + back), tuple(version_problems() + find_problems(scene)), cut=update_cut(scene)
-        )
-    keep_report(scene, preparation.media, preparation.problems, stays, changed)
+        problems, notes = _sorted(check(scene))
+        preparation = Preparation(tuple(stays + back), problems, cut=update_cut(scene), notes=notes)
+    keep_report(scene, preparation.media, preparation.problems + preparation.notes, stays, changed)
     return preparation
 
 
@@ -137,14 +139,15 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
     changes = [each for path, value in set_to for each in settings.change(scene, changed, path, value)]
     if update_lights(scene):
         stays.append("Lights of direct refraction and reflection: listed again")
-    problems = version_problems()
+    findings: list[Finding] = []
     dispersing = dispersing_materials(scene)
     for material in dispersing:
         try:
             if refresh_spectrum(material):
                 stays.append(f"Spectral Table of {material.name}: baked again")
         except ParameterError as error:
-            problems.append(Problem(material.name, f"keeps its old spectral table, because {error}", "choose another"))
+            text = f"keeps its old spectral table, because {error}"
+            findings.append(Finding(SPECTRAL_TABLE, material.name, text, "choose another"))
     found = analyse(scene)
     separated, coincident = separate_coincident_faces(scene)
     if separated:
@@ -152,13 +155,29 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
     changes += ensure_osl(scene, changed)
     by_osl = dispersing and not is_native(scene)
     changes += ensure_random_time(scene, changed) if by_osl else end_random_time(scene, changed)
-    problems += coincident + find_problems(scene)
+    findings += coincident + check(scene)
     cut = update_cut(scene)
     chosen = choose_bodies(scene)
-    problems += [Problem(need.name, need.reason, remedy) for need, remedy in needs.shortcomings(scene, cut, found)]
+    findings += [
+        Finding(MUST_ASK if need.is_hard else NATIVE_LIMIT, need.name, need.reason, remedy)
+        for need, remedy in needs.shortcomings(scene, cut, found)
+    ]
+    problems, notes = _sorted(severe(findings))
     return Preparation(
-        tuple(stays + changes + separated), tuple(problems), found.without(cut.media), len(media(scene)), cut, chosen
+        tuple(stays + changes + separated),
+        problems,
+        found.without(cut.media),
+        len(media(scene)),
+        cut,
+        chosen,
+        notes,
     )
+
+
+def _sorted(findings: Sequence[Finding]) -> tuple[tuple[Finding, ...], tuple[Finding, ...]]:
+    """Return what is a problem, and what is a note."""
+    problems = tuple(finding for finding in findings if finding.severity != Severity.NOTE)
+    return problems, tuple(finding for finding in findings if finding.severity == Severity.NOTE)
 
 
 def taken_back(scene: bpy.types.Scene, report: Report) -> list[str]:

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import bpy
 
 from ..analysis.changes import REPORT_PROPERTY
-from ..checking.finding import Problem
+from ..checking.finding import Finding, from_json, to_json
 from ..scene.settings import AT_LEAST, LABELS, Changed
 
 MOST_CHARACTERS = 4000
@@ -30,7 +30,7 @@ class Report:
     """
 
     media: int = 0
-    problems: tuple[Problem, ...] = ()
+    problems: tuple[Finding, ...] = ()
     more_problems: int = 0
     changes: tuple[str, ...] = ()
     more_changes: int = 0
@@ -38,13 +38,13 @@ class Report:
 
 
 def keep_report(
-    scene: bpy.types.Scene, media: int, problems: Sequence[Problem], changes: Sequence[str], settings: Changed
+    scene: bpy.types.Scene, media: int, problems: Sequence[Finding], changes: Sequence[str], settings: Changed
 ) -> None:
     """Keep what a preparation found and changed with its scene; nothing where there is nothing to say."""
     shown, stayed = _first(problems), _first(changes)
     value = {
         "media": media,
-        "problems": [(problem.name, problem.text, problem.remedy) for problem in shown],
+        "problems": [to_json(_with_few_faces(finding)) for finding in shown],
         "more_problems": len(problems) - len(shown),
         "changes": stayed,
         "more_changes": len(changes) - len(stayed),
@@ -55,6 +55,15 @@ def keep_report(
         forget_report(scene)
     elif scene.get(REPORT_PROPERTY) != text:
         scene[REPORT_PROPERTY] = text
+
+
+KEPT_FACES = 16
+"""The most faces of a finding that are kept."""
+
+
+def _with_few_faces(finding: Finding) -> Finding:
+    """Return a finding that names the first of its faces."""
+    return replace(finding, place=replace(finding.place, faces=finding.place.faces[:KEPT_FACES]))
 
 
 def _first(items: Sequence) -> list:
@@ -75,7 +84,7 @@ def last_report(scene: bpy.types.Scene) -> Report | None:
         value = json.loads(scene[REPORT_PROPERTY])
         return Report(
             int(value["media"]),
-            tuple(Problem(*map(str, each)) for each in value["problems"]),
+            tuple(map(from_json, value["problems"])),
             int(value["more_problems"]),
             tuple(map(str, value["changes"])),
             int(value["more_changes"]),

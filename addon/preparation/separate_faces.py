@@ -16,7 +16,8 @@ from ..analysis.findings import listed
 from ..analysis.mesh_modifiers import is_offset, keeps_mesh
 from ..analysis.surroundings import last_contacts
 from ..analysis.validity import is_analysed
-from ..checking.finding import Problem
+from ..checking.finding import Finding
+from ..checking.kinds import COINCIDENT
 from ..geometry.contacts import Contact
 from ..nodes.names import OFFSET_GROUP
 from ..scene.media import all_objects
@@ -28,7 +29,7 @@ PASSES = 8
 """How often faces may move: those beside them may then lie in one plane with others, so all is looked at again."""
 
 
-def separate_coincident_faces(scene: bpy.types.Scene) -> tuple[list[str], list[Problem]]:
+def separate_coincident_faces(scene: bpy.types.Scene) -> tuple[list[str], list[Finding]]:
     """Separate what coincides in a scene, which has just been analysed, and analyse it again.
 
     :returns: what was changed, in sentences, and what could not be.
@@ -60,7 +61,7 @@ class _Separated:
 
 def _next_offsets(
     scene: bpy.types.Scene, left: int, separated: dict[bpy.types.Object, _Separated]
-) -> tuple[dict[bpy.types.Object, np.ndarray], list[Problem]]:
+) -> tuple[dict[bpy.types.Object, np.ndarray], list[Finding]]:
     """Return how far to move objects' points, (n, 3) in their own space, and what of a scene cannot be separated.
 
     :param left: passes that follow; in the last nothing moves.
@@ -69,14 +70,16 @@ def _next_offsets(
     rows, found = last_contacts(scene)
     found, alike = _between_objects([obj for obj, _ in rows], found)
     text = "has instances with faces in the same place, which would all move alike"
-    problems = [Problem(obj.name, text, "let them overlap") for obj in alike]
+    problems = [Finding(COINCIDENT, obj.name, text, "let them overlap") for obj in alike]
     offsets: dict[bpy.types.Object, np.ndarray] = {}
     for index, move in plan_moves([body for _, body in rows], found, rims=left < PASSES).items():
         obj, body = rows[index]
         names = dict.fromkeys(rows[other][0].name for other in move.others)
         remedy = _remedy(obj, move) if left else "let them overlap"
         if remedy:
-            problems.append(Problem(obj.name, f"has faces in the same place as {listed(tuple(names))}", remedy))
+            problems.append(
+                Finding(COINCIDENT, obj.name, f"has faces in the same place as {listed(tuple(names))}", remedy)
+            )
             continue
         # An object that is instanced moves the same everywhere.
         offset = local_offsets(body, move)

@@ -11,13 +11,12 @@ from collections.abc import Iterator
 import bpy
 
 from ..analysis.validity import is_analysed
-from ..checking.finding import Problem
+from ..checking.version_checks import is_wrong_here
 from ..nodes.closures import arm_dispersion
-from ..nodes.compatibility import require_blender, takes_front_ior
+from ..nodes.compatibility import require_blender
 from ..nodes.group import ensure_group
-from ..nodes.material_version import DAMAGED, FRONT_IOR_VERSION, MATERIAL_VERSION, find_group, group_version
+from ..nodes.material_version import DAMAGED, MATERIAL_VERSION, find_group, group_version
 from ..scene.lights import refresh_lights
-from ..scene.materials import dielectric_node
 from ..scene.new_materials import show_colours_through
 from .group_exchange import exchange_group, move_curves, move_readers, owner_of
 from .leftovers import Leftovers, merge_offset_groups
@@ -78,7 +77,7 @@ def mend_materials() -> tuple[str, ...]:
 
     :returns: what was changed, in sentences.
     """
-    if any(tree.library is None and _is_wrong_here(tree) for tree in bpy.data.node_groups):
+    if any(tree.library is None and is_wrong_here(tree) for tree in bpy.data.node_groups):
         return update_materials()
     copies = [node for node in _outdated_nodes() if group_version(node.node_tree) == MATERIAL_VERSION]
     if copies:
@@ -90,32 +89,6 @@ def mend_materials() -> tuple[str, ...]:
 def outdated_materials() -> list[str]:
     """Return the names of what :func:`update_materials` would change the version or the copy of: materials and groups."""
     return sorted({owner_of(node.id_data).name for node in _outdated_nodes()})
-
-
-def version_problems() -> list[Problem]:
-    """Return what is wrong with the versions of materials and cannot be changed here."""
-    newer = {tree for tree in bpy.data.node_groups if (group_version(tree) or 0) > MATERIAL_VERSION}
-    wrong = {tree for tree in bpy.data.node_groups if tree.library is not None and _is_wrong_here(tree)}
-    problems = []
-    for material in bpy.data.materials if newer or wrong else ():
-        node = dielectric_node(material)
-        tree = None if node is None else node.node_tree
-        if tree in newer:
-            problems.append(
-                Problem(material.name, "was made by a newer version", "install that version of the extension")
-            )
-        elif tree in wrong and material.library is not None:
-            remedy = f"press Update Materials in {material.library.filepath!r} and save it"
-            damaged = group_version(tree) == DAMAGED
-            how = "in which its node group is damaged" if damaged else "of an older version, which is wrong here"
-            problems.append(Problem(material.name, f"comes from a file {how}", remedy))
-    return problems
-
-
-def _is_wrong_here(tree: bpy.types.NodeTree) -> bool:
-    """Return whether a group is damaged, or of a version that this Blender renders wrong."""
-    version = group_version(tree)
-    return version == DAMAGED or (version is not None and version < FRONT_IOR_VERSION and bool(takes_front_ior()))
 
 
 def _arm_groups() -> None:

@@ -24,6 +24,30 @@ def evaluated_triangles(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.nda
         evaluated.to_mesh_clear()
 
 
+def evaluated_faces(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return what :func:`mesh_triangles` returns of an evaluated object, and what its faces are.
+
+    :returns: beside vertices and triangles, (m,) the polygon of each triangle, and material slots of polygons, each once.
+    """
+    try:
+        mesh = evaluated.to_mesh()
+    except RuntimeError:
+        mesh = None
+    if mesh is None:
+        none = np.empty(0, dtype=np.int32)
+        return np.empty((0, 3), dtype=np.float32), none.reshape(0, 3), none, none
+    try:
+        vertices, triangles = mesh_triangles(mesh)
+        faces = np.arange(len(triangles), dtype=np.int32)
+        if len(triangles) != len(mesh.polygons):
+            mesh.loop_triangle_polygons.foreach_get("value", faces)
+        slots = np.zeros(len(mesh.polygons), dtype=np.int32)
+        mesh.polygons.foreach_get("material_index", slots)
+        return vertices, triangles, faces, np.unique(slots)
+    finally:
+        evaluated.to_mesh_clear()
+
+
 def mesh_triangles(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray]:
     """Return a mesh's vertices, (n, 3) float32, and the corners of its triangles, (m, 3) int32."""
     mesh.calc_loop_triangles()

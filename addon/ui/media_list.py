@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..analysis.mesh_modifiers import is_offset
-from ..checking.finding import Problem
+from ..checking.finding import Finding
 from ..checking.material_checks import material_problems
+from ..checking.version_checks import version_problems
 from ..nodes.lookups import caching_nodes
 from ..nodes.material_version import group_version
-from ..preparation.versions import version_problems
 from ..scene.materials import dielectric_node, may_disperse
 from ..scene.media import all_objects
 from ..scene.priorities import Row, priority_rows
@@ -29,7 +29,7 @@ class Listed:
     """
 
     rows: tuple[Row, ...] = ()
-    problems: tuple[Problem, ...] = ()
+    problems: tuple[Finding, ...] = ()
     parted: int = 0
     disperses: bool = False
     places: dict[int, int] = field(default_factory=dict)

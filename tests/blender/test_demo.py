@@ -4,7 +4,7 @@ import bpy
 import pytest
 from scenes import new_scene
 
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 from nested_dielectric.demo.iced_water import build_scene
 from nested_dielectric.scene.media import media
 

@@ -5,7 +5,7 @@ import pytest
 from scenes import add, add_sphere, new_scene
 
 import nested_dielectric as nd
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 from nested_dielectric.scene import materials
 from nested_dielectric.ui.media_list import listed_media
 

@@ -7,7 +7,7 @@ from scenes import add_sphere, new_scene
 
 import nested_dielectric as nd
 from nested_dielectric import registration
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 from nested_dielectric.model.parameters import BY_KEYWORD
 from nested_dielectric.nodes.places import dielectric_places
 from nested_dielectric.preparation import live

@@ -9,7 +9,7 @@ from scenes import add, add_box, diffuse, new_scene
 
 import nested_dielectric as nd
 from nested_dielectric.analysis.surroundings import last_found
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 
 
 def problems() -> list[str]:

@@ -7,7 +7,7 @@ from same_place import block, duplicate
 from scenes import add, add_box, add_plane, diffuse, mostly_again, new_scene
 
 import nested_dielectric as nd
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 from nested_dielectric.checking.overlap_checks import NEAR
 from nested_dielectric.nodes.names import OFFSET_ATTRIBUTE, OFFSET_GROUP
 from nested_dielectric.preparation.coincident_faces import least_squares_offsets

@@ -8,7 +8,8 @@ from scenes import add_box, add_plane, add_sphere
 import nested_dielectric as nd
 from nested_dielectric.analysis.changes import REPORT_PROPERTY
 from nested_dielectric.analysis.validity import is_analysed
-from nested_dielectric.checking.finding import Problem
+from nested_dielectric.checking.finding import Finding
+from nested_dielectric.checking.kinds import OPEN_MESH
 from nested_dielectric.preparation.prepare_scene import put_back
 from nested_dielectric.preparation.report import Report, keep_report, last_report
 from nested_dielectric.scene import settings
@@ -213,7 +214,7 @@ def test_a_report_survives_saving_and_opening_and_so_does_what_it_puts_back(scen
 
 
 def test_a_report_of_thousands_of_problems_takes_a_few_kilobytes(scene):
-    problems = [Problem(f"Object {index}", "is not closed " * 5, "close it " * 10) for index in range(5000)]
+    problems = [Finding(OPEN_MESH, f"Object {index}", "is not closed " * 5, "close it " * 10) for index in range(5000)]
     keep_report(scene, 5000, problems, [f"Change {index}" for index in range(5000)], {"render.engine": ("A", "CYCLES")})
     assert len(scene[REPORT_PROPERTY].encode()) < 12_000
     report = last_report(scene)

@@ -11,7 +11,7 @@ from furnace import ball_in_furnace
 from scenes import add_mesh, add_sphere, new_scene, set_world
 
 import nested_dielectric as nd
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 from nested_dielectric.nodes import compatibility, osl
 
 

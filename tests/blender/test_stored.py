@@ -10,7 +10,7 @@ from scenes import add_box, add_point_light, add_sphere, new_scene
 import nested_dielectric as nd
 from nested_dielectric.analysis.mesh_modifiers import is_offset
 from nested_dielectric.analysis.surroundings import clear_analysis
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 from nested_dielectric.model.presets import load_preset
 from nested_dielectric.model.spectral_tables import spectral_table
 from nested_dielectric.nodes.lights_group import find_lights

@@ -18,7 +18,7 @@ from scenes import add_box, emission, new_scene
 from slabs import tinted
 
 import nested_dielectric as nd
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 
 
 def problems() -> str:

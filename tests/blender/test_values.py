@@ -8,7 +8,7 @@ from odd_values import BOUNDED, INF, NAN, PRIORITIES
 from scenes import add_box, add_camera, add_sphere, new_scene, set_striped_world
 
 import nested_dielectric as nd
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 from nested_dielectric.model import parameters, shader_source
 from nested_dielectric.model.parameters import BY_KEYWORD, BY_NAME
 

@@ -11,6 +11,7 @@ from released_files import FILES, FIRST, FRONT_IOR, open_file
 from scenes import add_box, new_scene
 
 import nested_dielectric as nd
+from nested_dielectric.checking.version_checks import version_problems
 from nested_dielectric.model import shader_source
 from nested_dielectric.model.spectral_tables import spectral_table
 from nested_dielectric.nodes.animation import curves
@@ -276,7 +277,7 @@ def test_a_newer_material_is_named_and_left():
     tree[VERSION_PROPERTY] = MATERIAL_VERSION + 1
     assert versions.outdated_materials() == [] and nd.update_materials() == ()
     assert material.node_tree.nodes[NODE].node_tree == tree
-    (problem,) = versions.version_problems()
+    (problem,) = version_problems()
     assert "'Glass' was made by a newer version" in str(problem)
     assert str(problem) in map(str, nd.prepare(bpy.context.scene).problems)
 
@@ -285,7 +286,7 @@ def test_linked_materials_that_are_wrong_here_are_named_with_the_remedy():
     new_scene()
     with bpy.data.libraries.load(str(FIRST), link=True) as (_, wanted):
         wanted.materials = ["Glass"]
-    problems = [str(problem) for problem in versions.version_problems()]
+    problems = [str(problem) for problem in version_problems()]
     assert len(problems) == FRONT_IOR
     assert all(
         "'Glass' comes from a file of an older version" in text and "Update Materials" in text for text in problems

@@ -7,10 +7,11 @@ import textwrap
 import bpy
 
 from ...analysis.surroundings import last_found
+from ...checking.version_checks import version_problems
 from ...cutting.cut_scene import last_cut
 from ...nodes.compatibility import blender_note, blender_problem
 from ...nodes.lookups import caching_nodes
-from ...preparation.versions import outdated_materials, version_problems
+from ...preparation.versions import outdated_materials
 from ...scene.materials import medium_material
 from ..drawing import ObjectProperties, Sidebar, draw_alert, draw_text
 from ..media_list import listed_media
