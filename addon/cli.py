@@ -2,7 +2,8 @@
 
 Blender takes only identifiers for commands, hence the underscore there.
 
-Exit codes: 0 done, 1 failed, 2 wrong usage; Ctrl-C ends it as it ends other programs, which shells report as 130.
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 something is wrong with the file that was checked; Ctrl-C ends it as it ends
+other programs, which shells report as 130.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from .commands import (
     PROGRAM,
     Failure,
     run_bake,
+    run_check,
     run_demo,
     run_import_jf,
     run_prepare,
@@ -52,7 +54,7 @@ def main(arguments: list[str] | None = None) -> int:
     bpy.utils.expose_bundled_modules()  # Script nodes of a file that is opened keep their sockets with it alone
     try:
         with ending_at_once(bpy.app.tempdir):
-            options.run(options)
+            code = options.run(options)
             sys.stdout.flush()
     except BrokenPipeError:  # whoever read it has enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -62,13 +64,13 @@ def main(arguments: list[str] | None = None) -> int:
         text = f"{error.filename}: {error.strerror}" if named else str(error).replace("Error: ", "")
         print(f"{PROGRAM}: error: {' '.join(text.split())}", file=sys.stderr)
         return 1
-    return 0
+    return code or 0
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog=PROGRAM, description="Nested dielectrics for Cycles.", allow_abbrev=False)
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for add in (_add_demo, _add_render, _add_prepare, _add_update, _add_presets, _add_bake, _add_import_jf):
+    for add in (_add_demo, _add_render, _add_check, _add_prepare, _add_update, _add_presets, _add_bake, _add_import_jf):
         add(partial(commands.add_parser, allow_abbrev=False))
     return parser
 
@@ -98,6 +100,16 @@ def _add_render(add_parser: _AddParser) -> None:
     )
     _add_backend(render)
     render.set_defaults(run=run_render)
+
+
+def _add_check(add_parser: _AddParser) -> None:
+    check = add_parser("check", help="say what is wrong with the media of a .blend, where, and what would mend it")
+    _add_file(check)
+    check.add_argument("--json", action="store_true", help="write it as JSON")
+    check.add_argument("--strict", action="store_true", help="take what is slow for wrong, too")
+    check.add_argument("--fix", action="store_true", help="mend what can be mended safely, and save that as OUT.blend")
+    check.add_argument("-o", "--output", type=_blend, metavar="OUT.blend", help="file to write, with --fix")
+    check.set_defaults(run=run_check)
 
 
 def _add_prepare(add_parser: _AddParser) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import io
+import json
 import os
 import sys
 from contextlib import ExitStack
@@ -12,6 +13,9 @@ from pathlib import Path
 import bpy
 import numpy as np
 
+from .checking.check import check
+from .checking.finding import Finding, to_json
+from .checking.kinds import Severity
 from .demo.iced_water import build_scene
 from .importers.jf_reader import read_nodes
 from .importers.jf_translation import report, translate
@@ -101,6 +105,67 @@ def run_prepare(options: argparse.Namespace) -> None:
             else f"the cut of frame {scene.frame_current} is in the file"
         )
     print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
+
+
+CHECK_SCHEMA = 1
+"""Version of the JSON that ``check`` writes; it is counted on when a key changes its meaning or goes."""
+
+FOUND = 3
+"""Exit code of ``check`` where something is wrong."""
+
+
+def run_check(options: argparse.Namespace) -> int:
+    """Say what is wrong with the media of all scenes of a file, and with ``--fix`` mend what is safe and save it.
+
+    :returns: 0, or :data:`FOUND` where pictures would be wrong; with ``--strict`` also where they would be slow.
+    """
+    if options.fix and options.output is None:
+        raise Failure("--fix needs a file to write: name it with --output")
+    _open(options.file)
+    changes = {scene.name: [] for scene in bpy.data.scenes}
+    findings = {scene.name: check(scene) for scene in bpy.data.scenes}
+    saved = save_blend(options.output) if options.fix else None
+    if options.json:
+        print(_as_json(findings, changes, saved))
+    else:
+        for name, found in findings.items():
+            print("\n".join(_in_lines(name, found, changes[name])))
+        if saved:
+            print(f"wrote {saved}")
+    counts = {Severity.WRONG, Severity.SLOW} if options.strict else {Severity.WRONG}
+    return FOUND if any(each.severity in counts for found in findings.values() for each in found) else 0
+
+
+def _as_json(findings: dict[str, list[Finding]], changes: dict[str, list[str]], saved: Path | None) -> str:
+    """Return what ``check`` has found as JSON."""
+    scenes = [
+        {"scene": name, "findings": list(map(to_json, found)), "changes": changes[name]}
+        for name, found in findings.items()
+    ]
+    report = {
+        "schema": CHECK_SCHEMA,
+        "file": bpy.data.filepath,
+        "blender": bpy.app.version_string,
+        "saved": None if saved is None else str(saved),
+        "scenes": scenes,
+    }
+    return json.dumps(report, indent=2, ensure_ascii=False)
+
+
+def _in_lines(scene: str, found: list[Finding], changes: list[str]) -> list[str]:
+    """Return what ``check`` has found in a scene as lines of text."""
+    lines = [f"{scene}: {headline_of(found)}", *(f"changed: {change}" for change in changes)]
+    for finding in found:
+        lines += [f"{finding.severity}: {finding}", f"  shows: {finding.shows}"]
+        if finding.place.point is not None:
+            lines.append("  at: " + ", ".join(f"{x:.6g}" for x in finding.place.point))
+    return lines
+
+
+def headline_of(found: list[Finding]) -> str:
+    """Return in one line how much of each severity was found."""
+    counts = {severity: sum(finding.severity == severity for finding in found) for severity in Severity}
+    return ", ".join(f"{count} {severity}" for severity, count in counts.items() if count) or "nothing is wrong"
 
 
 def run_update(options: argparse.Namespace) -> None:

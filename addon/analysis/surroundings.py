@@ -131,15 +131,19 @@ def _analyse_snapshot(snapshot: SceneSnapshot) -> Found:
     told = exterior_facts(snapshot)
     write_facts(snapshot, told)
     write_centre(snapshot)
-    known.snapshot, known.found = snapshot, _findings(snapshot, told)
+    known.snapshot, known.found = snapshot, findings_of(snapshot, told)
     set_native_validity(snapshot.scene, True)
     forget_unused()
     set_validity(snapshot.scene, Validity(1.0, current_frame(snapshot.scene), validity_of(snapshot.scene).every_frame))
     return known.found
 
 
-def _findings(snapshot: SceneSnapshot, told: dict[bpy.types.Object, ExteriorFacts]) -> Found:
-    """Return what an analysis found, by name."""
+def findings_of(snapshot: SceneSnapshot, told: dict[bpy.types.Object, ExteriorFacts] | None = None) -> Found:
+    """Return what an analysis found, by name.
+
+    :param told: what each medium is told; None works it out.
+    """
+    told = exterior_facts(snapshot) if told is None else told
     pairs = {
         tuple(sorted((instance.obj.name, snapshot.bodies[other].obj.name)))
         for instance, contact in zip(snapshot.bodies, snapshot.contacts)

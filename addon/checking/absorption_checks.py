@@ -10,6 +10,7 @@ from mathutils import Vector
 
 from ..analysis.extents import SHAPED
 from ..analysis.solid_cache import mesh_of
+from ..geometry.meshes import mean_chord
 from ..model.contract import BY_VOLUME_SOCKET
 from ..nodes.identity import known_number
 from ..nodes.names import MASK_OUTPUT
@@ -18,9 +19,9 @@ from ..scene.lights import scene_lights
 from ..scene.materials import absorption_coefficients, dielectric_node, has_own_volume, medium_material
 from ..scene.media import get_priority
 from .evaluated_shapes import evaluated_shape, sample_points
-from .finding import Finding
+from .finding import Action, Finding, Fix
 from .inspection import Inspection
-from .kinds import TINT_IN_PART, TINTED_LABEL, VOLUME_IN_WINNER
+from .kinds import TINT_IN_PART, TINT_STRENGTH, TINTED_LABEL, VOLUME_IN_WINNER
 
 
 def _is_tinted(obj: bpy.types.Object) -> bool:
@@ -84,12 +85,11 @@ _TO_VOLUME = (
 def _transmitting_objects(inspection: Inspection) -> Iterator[tuple[str, np.ndarray]]:
     """Yield lights and what sends light on, by name, with (n, 3) points of them."""
     scene, depsgraph = inspection.scene, inspection.depsgraph
-    known = set(inspection.objects)
     for light in scene_lights(scene):
         if light.data.type != "SUN" and not light.hide_render:
             yield light.name, light_box(light).mean(axis=0)[None]
     for obj in scene.objects:
-        if obj in known or obj.type not in SHAPED or obj.hide_render or not sends_light_on(obj):
+        if obj in inspection.among or obj.type not in SHAPED or obj.hide_render or not sends_light_on(obj):
             continue
         if medium_material(obj) is not None:
             continue
@@ -106,6 +106,43 @@ def _transmitting_objects(inspection: Inspection) -> Iterator[tuple[str, np.ndar
                 obj.name,
                 np.array([tuple(obj.matrix_world @ Vector(corner)) for corner in obj.bound_box]).mean(axis=0)[None],
             )
+
+
+DARKEST, CLEAREST = 0.01, 0.99
+"""Parts of the light beyond which a tint is hardly meant: what the brightest, and what the darkest channel lets through."""
+
+
+def strength_findings(inspection: Inspection) -> Iterator[Finding]:
+    """Yield media whose colour is black or invisible through as much of it as the object is thick: a depth in another unit."""
+    seen = set()
+    for shape in inspection.solids:
+        material = medium_material(shape.obj)
+        node = dielectric_node(material)
+        if material in seen or any(node.inputs[name].is_linked for name in ("Transmittance", "Transmittance Depth")):
+            continue
+        coefficients = np.array(absorption_coefficients(node))
+        if not coefficients.any():
+            continue
+        thickness = mean_chord(shape.vertices, shape.triangles)
+        left = np.exp(-coefficients * thickness)
+        if left.max() >= DARKEST and not CLEAREST < left.min() < 1.0:
+            continue
+        seen.add(material)
+        depth = node.inputs["Transmittance Depth"].default_value
+        yield Finding(
+            TINT_STRENGTH,
+            shape.obj.name,
+            f"lets {_percent(left)} of the light through: it is {thickness:.3g} thick, its colour has a Transmittance Depth "
+            f"of {depth:.3g}",
+            "press Fit Depth (Object > Nested Dielectric), if that is not meant",
+            others=(material.name,),
+            fix=Fix(Action.SET_DEPTH, (shape.obj.name,), thickness, safe=False),
+        )
+
+
+def _percent(left: np.ndarray) -> str:
+    """Return in words what is left of the light, of red, green and blue."""
+    return "less than 1 %" if left.max() < DARKEST else f"{100.0 * left.min():.4g} %"
 
 
 def volume_findings(inspection: Inspection) -> list[Finding]:

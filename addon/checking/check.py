@@ -10,7 +10,7 @@ from ..analysis import solid_cache
 from ..analysis.surroundings import is_invalid
 from ..analysis.validity import is_analysed
 from ..nodes.lookups import caching_nodes
-from .absorption_checks import tint_findings, volume_findings
+from .absorption_checks import strength_findings, tint_findings, volume_findings
 from .finding import Finding, severe
 from .inspection import Inspection, inspect
 from .light_checks import dispersion_findings, light_findings
@@ -18,9 +18,13 @@ from .material_checks import mask_findings, node_findings, value_findings
 from .mesh_checks import mesh_findings
 from .object_checks import kind_findings, object_findings
 from .overlap_checks import foreign_contact_findings, overlap_findings
+from .ray_checks import ray_findings
+from .scene_checks import scene_findings
+from .setting_checks import backend_findings, setting_findings
 from .version_checks import version_findings
 
 CHECKS: tuple[Callable[[Inspection], Iterable[Finding]], ...] = (
+    setting_findings,
     version_findings,
     node_findings,
     kind_findings,
@@ -34,6 +38,10 @@ CHECKS: tuple[Callable[[Inspection], Iterable[Finding]], ...] = (
     light_findings,
     tint_findings,
     volume_findings,
+    strength_findings,
+    ray_findings,
+    backend_findings,
+    scene_findings,
 )
 """All checks, in the order of what they find."""
 

@@ -37,6 +37,11 @@ class Inspection:
     _instanced: dict[int, EvaluatedMesh] = field(default_factory=dict)
 
     @cached_property
+    def among(self) -> set[bpy.types.Object]:
+        """Return the media as a set."""
+        return set(self.objects)
+
+    @cached_property
     def shapes(self) -> list[Shape]:
         """Return the media that have a mesh where it stands, in the order of the objects."""
         evaluated = [obj.evaluated_get(self.depsgraph) for obj in self.objects]
@@ -52,10 +57,14 @@ class Inspection:
 
     def foreign(self, low: np.ndarray, high: np.ndarray) -> Iterator[Shape]:
         """Yield what is no medium and comes near any of some boxes: (n, 3) lowest and highest corners in the world."""
-        among = set(self.objects)
         for instance in self.depsgraph.object_instances if len(low) else ():
             obj = instance.object
-            if obj.type not in SOLID_TYPES or obj.original in among or obj.original.hide_render or is_cut_surface(obj):
+            if (
+                obj.type not in SOLID_TYPES
+                or obj.original in self.among
+                or obj.original.hide_render
+                or is_cut_surface(obj)
+            ):
                 continue
             matrix = np.array(instance.matrix_world)
             box = np.array([tuple(corner) for corner in obj.bound_box]) @ matrix[:3, :3].T + matrix[:3, 3]

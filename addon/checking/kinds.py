@@ -92,4 +92,5 @@ SETTINGS = _kind("settings", _WRONG, "No nested media, or magenta where they are
 MUST_ASK = _kind("must-ask", _WRONG, "Magenta: what renders cannot ask what lies outside")
 NATIVE_LIMIT = _kind("native-limit", _WRONG, "What Cycles' own nodes make of it")
 NO_COLOURS = _kind("no-colours", _WRONG, "Dispersing media without their own colours")
+SCENES_ASK = _kind("scenes-ask", _SLOW, "The right picture, for which rays ask what media are told in another scene")
 SCENES_DISAGREE = _kind("scenes-disagree", _WRONG, "Media as another scene needs them")

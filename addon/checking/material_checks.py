@@ -10,10 +10,10 @@ import numpy as np
 from ..model.parameters import SOCKETS
 from ..nodes.lookups import caching_nodes
 from ..nodes.places import ignores_masks
-from ..nodes.problems import node_problems
+from ..nodes.problems import PREPARE, node_problems
 from ..scene.materials import dielectric_node, dielectrics, may_disperse
 from ..scene.media import all_objects, get_priority
-from .finding import Finding
+from .finding import Action, Finding, Fix
 from .inspection import Inspection
 from .kinds import NODES, UNMASKED_MIX, VALUE_LIMIT
 
@@ -32,10 +32,15 @@ def material_problems(scene: bpy.types.Scene) -> list[Finding]:
             if slot.material is not None:
                 users.setdefault(slot.material, obj)
     return [
-        Finding(NODES, obj.name, f"has {text}", remedy)
+        Finding(NODES, obj.name, f"has {text}", remedy, others=(material.name,), fix=_mending(material, remedy))
         for material, obj in users.items()
         for text, remedy in node_problems(material)
     ]
+
+
+def _mending(material: bpy.types.Material, remedy: str) -> Fix | None:
+    """Return what mends a material's nodes where Prepare Scene would."""
+    return Fix(Action.MEND_NODES, (material.name,)) if PREPARE in remedy and material.library is None else None
 
 
 def value_findings(inspection: Inspection) -> list[Finding]:
@@ -61,9 +66,16 @@ def value_findings(inspection: Inspection) -> list[Finding]:
                         f"has {_text_of(value)} for {parameter.name!r} in material {material.name!r}, "
                         f"which counts as {_text_of(counts)}",
                         f"set it to something from {parameter.limits[0]:g} to {parameter.limits[1]:g}",
+                        others=(material.name,),
+                        fix=_bounding(material, parameter.name),
                     )
                 )
     return problems
+
+
+def _bounding(material: bpy.types.Material, name: str) -> Fix | None:
+    """Return what sets a socket to the value that it counts as."""
+    return Fix(Action.SET_VALUE, (material.name,), path=name) if material.library is None else None
 
 
 def _text_of(value: float | Sequence[float]) -> str:

@@ -11,7 +11,7 @@ from ..model.parameter import MAX_PRIORITY, PRIORITY_PROPERTY
 from ..nodes.animation import curves
 from ..scene.materials import dielectric_node, dielectrics
 from ..scene.media import NO_SOLIDS, get_priority, own_priority
-from .finding import Finding
+from .finding import Action, Finding, Fix
 from .inspection import Inspection
 from .kinds import BAD_PRIORITY, NO_INSIDE, SLOT_LIMIT
 
@@ -63,9 +63,15 @@ def _slot_findings(obj: bpy.types.Object) -> list[Finding]:
                     obj.name,
                     f"has a nested dielectric in slot {slot + 1}, where its neighbours do not look",
                     f"move it to one of the first {MATERIAL_SLOTS} slots",
+                    fix=_if_editable(obj, Fix(Action.MOVE_SLOT, (obj.name,))),
                 )
             )
     return findings
+
+
+def _if_editable(obj: bpy.types.Object, fix: Fix) -> Fix | None:
+    """Return what mends an object, if it belongs to this file."""
+    return fix if obj.library is None else None
 
 
 def _priority_findings(obj: bpy.types.Object) -> list[Finding]:
@@ -84,6 +90,9 @@ def _priority_findings(obj: bpy.types.Object) -> list[Finding]:
                 f"has the custom property {PRIORITY_PROPERTY!r} with no whole number from 0 to {MAX_PRIORITY} in it, "
                 f"which {counts}",
                 "delete it, or set its priority again",
+                fix=_if_editable(
+                    obj, Fix(Action.REMOVE_PROPERTY, (obj.name,), path=PRIORITY_PROPERTY, safe=own is None)
+                ),
             )
         )
     path = f'["{PRIORITY_PROPERTY}"]'

@@ -145,6 +145,9 @@ CUT_SPLITS = len(DispersionModel)
 MATERIAL_SLOTS = 8
 """Slots of an object in which neighbours look for its dielectric."""
 
+PROBE_HITS = 65536
+"""Surfaces that a ray of the shader's may count, over all runs for many priorities; beyond, the surface shows the alarm."""
+
 SECOND_SLOT_PATH = "material_slots[1].material.pass_index"
 """Path from an object that leads somewhere if it has a second material."""
 

@@ -19,48 +19,60 @@ def engine_name(engine: str) -> str:
 
 
 def settings_problem(scene: bpy.types.Scene) -> str | None:
-    """Return why a scene's render settings would not show nested dielectrics, or None if they would."""
+    """Return in a sentence why a scene's render settings would not show nested dielectrics, or None if they would."""
+    fault = settings_fault(scene)
+    return None if fault is None else f"scene {scene.name!r} {fault[0]}; {fault[1]}"
+
+
+def settings_fault(scene: bpy.types.Scene) -> tuple[str, str] | None:
+    """Return what of a scene's render settings would not show nested dielectrics, after its name, and the remedy."""
     if scene.render.engine != "CYCLES":
-        return f"scene {scene.name!r} renders with {engine_name(scene.render.engine)}; nested dielectrics need Cycles"
+        return f"renders with {engine_name(scene.render.engine)}", "nested dielectrics need Cycles"
     if get_backend(scene) != OSL or runs_osl(scene):
         return None
     if not compatibility.has_osl():
         return (
-            f"scene {scene.name!r} renders with Open Shading Language, which this Blender was built without; "
-            "set Render With to Automatic, or use the build from blender.org"
+            "renders with Open Shading Language, which this Blender was built without",
+            "set Render With to Automatic, or use the build from blender.org",
         )
     if not scene.cycles.shading_system:
         return (
-            f"scene {scene.name!r} renders without Open Shading Language; "
-            "switch it on in Render properties, press Prepare Scene, or set Render With to Automatic"
+            "renders without Open Shading Language",
+            "switch it on in Render properties, press Prepare Scene, or set Render With to Automatic",
         )
     return (
-        f"scene {scene.name!r} renders on the GPU, where shaders cannot trace rays; "
-        "set Render properties > Device to CPU, press Prepare Scene, or set Render With to Automatic"
+        "renders on the GPU, where shaders cannot trace rays",
+        "set Render properties > Device to CPU, press Prepare Scene, or set Render With to Automatic",
     )
 
 
 def achromatic_reason(scene: bpy.types.Scene) -> str | None:
-    """Return why dispersing media of a scene would render without their own colours, or None if they would not."""
+    """Return in sentences why dispersing media of a scene would render without their own colours, or None."""
+    fault = achromatic_fault(scene)
+    return None if fault is None else f"scene {scene.name!r} {fault[0]}. {fault[1][0].upper()}{fault[1][1:]}"
+
+
+def achromatic_fault(scene: bpy.types.Scene) -> tuple[str, str] | None:
+    """Return why dispersing media of a scene would render without their own colours, after its name, and the remedy."""
     if is_native(scene):
         if bpy.app.version >= NATIVE_DISPERSION_VERSION:
             return None
         return (
-            f"scene {scene.name!r} renders with Cycles' own nodes, which split no light before Blender 5.3; media look as they "
-            "do at 587.6 nm. Set Render With to OSL and press Prepare Scene"
+            "renders with Cycles' own nodes, which split no light before Blender 5.3; media look as they do at 587.6 nm",
+            "set Render With to OSL and press Prepare Scene",
         )
     if not scene.render.use_motion_blur:
         instead = (
             "show Cycles' own colours, not their spectrum's" if shows_front_ior() else "look as they do at 587.6 nm"
         )
         return (
-            f"scene {scene.name!r} renders without motion blur, whose random time carries the wavelength of a path; media "
-            f"{instead}. Press Prepare Scene, which switches it on with a shutter of 0, so that nothing blurs"
+            f"renders without motion blur, whose random time carries the wavelength of a path; media {instead}",
+            "press Prepare Scene, which switches it on with a shutter of 0, so that nothing blurs",
         )
     if scene.render.motion_blur_shutter == 0.0 and not _even_shutter(scene):
         return (
-            f"scene {scene.name!r} has a shutter of 0 with a shutter curve or a rolling shutter, which favour some "
-            "wavelengths over others; press Prepare Scene"
+            "has a shutter of 0 with a shutter curve or a rolling shutter, which favour some wavelengths over others",
+            "press Prepare Scene",
         )
     return None
 

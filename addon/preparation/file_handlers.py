@@ -7,8 +7,8 @@ import bpy
 from ..analysis import surroundings
 from ..analysis.validity import set_frame_validity, set_native_validity
 from ..cutting import backends, cut_objects
+from ..scene.scripts import frame_scripts
 from . import idle, upkeep, windows
-from .scripts import frame_scripts
 from .upkeep import analysed_scenes, cut_scenes
 
 

@@ -12,8 +12,7 @@ from ..analysis.surroundings import clear_analysis, last_found
 from ..analysis.validity import is_analysed
 from ..checking.check import check
 from ..checking.finding import Finding, severe
-from ..checking.kinds import MUST_ASK, NATIVE_LIMIT, SPECTRAL_TABLE, Severity
-from ..cutting import needs
+from ..checking.kinds import SPECTRAL_TABLE, Severity
 from ..cutting.backends import BackendChoice
 from ..cutting.cut_plan import CutReport
 from ..cutting.cut_scene import is_set_to_cut, remove_cut, set_cut
@@ -155,13 +154,9 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
     changes += ensure_osl(scene, changed)
     by_osl = dispersing and not is_native(scene)
     changes += ensure_random_time(scene, changed) if by_osl else end_random_time(scene, changed)
-    findings += coincident + check(scene)
     cut = update_cut(scene)
     chosen = choose_bodies(scene)
-    findings += [
-        Finding(MUST_ASK if need.is_hard else NATIVE_LIMIT, need.name, need.reason, remedy)
-        for need, remedy in needs.shortcomings(scene, cut, found)
-    ]
+    findings += coincident + check(scene)
     problems, notes = _sorted(severe(findings))
     return Preparation(
         tuple(stays + changes + separated),

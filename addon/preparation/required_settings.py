@@ -11,6 +11,7 @@ from ..nodes.compatibility import has_osl
 from ..nodes.render_settings import achromatic_reason
 from ..nodes.render_with import NATIVE, OSL, get_backend
 from ..scene import settings
+from ..scene.scripts import frame_scripts
 from ..scene.settings import (
     DEVICE,
     MOTION_BLUR,
@@ -21,7 +22,6 @@ from ..scene.settings import (
     SHUTTER_CURVE,
     Changed,
 )
-from .scripts import frame_scripts
 
 
 def ensure_osl(scene: bpy.types.Scene, changed: Changed) -> list[str]:

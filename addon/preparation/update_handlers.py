@@ -10,8 +10,8 @@ import bpy
 from ..analysis import changes, surroundings
 from ..analysis.validity import is_analysed
 from ..cutting import cut_scene, views
+from ..scene.scripts import frame_scripts
 from . import idle, upkeep, windows
-from .scripts import frame_scripts
 
 
 @bpy.app.handlers.persistent

@@ -16,8 +16,8 @@ from ..analysis.validity import is_analysed, set_frame_validity
 from ..cutting import backends, cut_collection, cut_plan, cut_scene, views
 from ..nodes.lookups import caching_nodes
 from ..nodes.mending import repair_nodes
+from ..scene.scripts import frame_scripts, update_scripts
 from . import windows
-from .scripts import frame_scripts, update_scripts
 
 ANALYSIS, CUTTING, BODIES = "analysis", "cutting", "bodies"
 """What may have been done for a scene."""
