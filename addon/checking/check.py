@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterable
 import bpy
 
 from ..analysis import solid_cache
-from ..analysis.surroundings import is_invalid
-from ..analysis.validity import is_analysed
 from ..nodes.lookups import caching_nodes
 from .absorption_checks import strength_findings, tint_findings, volume_findings
 from .finding import Finding, severe
@@ -46,13 +44,13 @@ CHECKS: tuple[Callable[[Inspection], Iterable[Finding]], ...] = (
 """All checks, in the order of what they find."""
 
 
-@caching_nodes()
 def check(scene: bpy.types.Scene) -> list[Finding]:
-    """Look at a scene as it is evaluated now, and return what is wrong with it, the worst first; change nothing.
+    """Look at a scene as it is evaluated now, and return what is wrong with it, the worst first; change nothing."""
+    solid_cache.forget_all()
+    return find(inspect(scene))
 
-    Meshes are read once, for all checks and for what else looks at them.
-    """
-    if not is_analysed(scene) or is_invalid(scene):
-        solid_cache.forget_all()  # nothing has followed what changed
-    inspection = inspect(scene)
+
+@caching_nodes()
+def find(inspection: Inspection) -> list[Finding]:
+    """Return what is wrong with a scene that is being looked at, the worst first."""
     return severe([finding for each in CHECKS for finding in each(inspection)])

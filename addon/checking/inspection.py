@@ -9,7 +9,6 @@ from functools import cached_property
 import bpy
 import numpy as np
 
-from ..analysis.session import analysis_of
 from ..analysis.snapshot import SceneSnapshot, take_snapshot
 from ..analysis.solid_cache import EvaluatedMesh, mesh_of
 from ..geometry import contacts
@@ -84,15 +83,13 @@ class Inspection:
         return self._instanced[key]
 
 
-def inspect(scene: bpy.types.Scene) -> Inspection:
+def inspect(scene: bpy.types.Scene, snapshot: SceneSnapshot | None = None) -> Inspection:
     """Look at a scene as it is evaluated now, and change nothing.
 
-    What the last analysis of the scene knows is used again while it holds.
+    :param snapshot: what an analysis has just found of it; None looks anew.
     """
     layer = scene.view_layers[0]
     layer.update()
-    known = analysis_of(scene)
-    snapshot = known.snapshot
     if snapshot is None:
         snapshot = take_snapshot(scene, layer.depsgraph)
         bodies = [instance.body for instance in snapshot.bodies]

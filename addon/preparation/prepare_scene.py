@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..analysis.findings import Found
-from ..analysis.surroundings import clear_analysis, last_found
+from ..analysis.surroundings import clear_analysis, last_found, last_snapshot
 from ..analysis.validity import is_analysed
-from ..checking.check import check
+from ..checking.check import check, find
 from ..checking.finding import Finding, severe
+from ..checking.inspection import inspect
 from ..checking.kinds import SPECTRAL_TABLE, Severity
 from ..cutting.backends import BackendChoice
 from ..cutting.cut_plan import CutReport
@@ -156,7 +157,7 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
     changes += ensure_random_time(scene, changed) if by_osl else end_random_time(scene, changed)
     cut = update_cut(scene)
     chosen = choose_bodies(scene)
-    findings += coincident + check(scene)
+    findings += coincident + find(inspect(scene, last_snapshot(scene)))
     problems, notes = _sorted(severe(findings))
     return Preparation(
         tuple(stays + changes + separated),

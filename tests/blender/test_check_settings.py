@@ -10,6 +10,7 @@ from scenes import add_camera, add_sphere, new_scene
 import nested_dielectric as nd
 from nested_dielectric.checking.finding import Action, Fix, from_json, to_json
 from nested_dielectric.checking.kinds import KINDS, Severity
+from nested_dielectric.preparation import live
 from nested_dielectric.scene.settings import AT_LEAST
 
 
@@ -118,6 +119,7 @@ def test_a_material_that_another_scene_was_told_of_last_is_named():
     second.collection.objects.link(bpy.data.objects["Ball"])
     second.render.engine, second.cycles.shading_system = "CYCLES", True
     nd.prepare(second)
+    live.remove()  # which tells whichever scene is looked at
     (finding,) = found("scenes-ask")
     assert finding.severity == Severity.SLOW and set(finding.others) == {"Second", "Glass"}
     nd.prepare(first)
