@@ -1,10 +1,12 @@
-"""The manual's pages that come from the code: every parameter, and every preset with its sources."""
+"""The manual's pages that come from the code: every parameter, every preset with its sources, all that a check finds."""
 
 from __future__ import annotations
 
 from itertools import groupby
 from pathlib import Path
 
+from nested_dielectric.checking.finding import Action
+from nested_dielectric.checking.kinds import KINDS, Severity
 from nested_dielectric.model import distributions
 from nested_dielectric.model.parameter import Limit, Parameter
 from nested_dielectric.model.parameters import PARAMETERS
@@ -42,6 +44,39 @@ what white light is after it; when a preset is assigned, the depth becomes the o
 
 A preset is a readable file: TOML with a name, a group, tags, a description, the source of its numbers and a table
 `[parameters]` of [keywords](parameters.md). Your own are saved from the panel ([Five-minute start](start.md)).
+"""
+
+
+FINDINGS_INTRODUCTION = """\
+# What a check finds
+
+Made from the code by `make docs`. *Prepare Scene* checks, too; `nd.check(scene)` and the [command](command-line.md) `check`
+change nothing. Each finding names the object, the place, what the picture would show and the remedy, and many have a button
+that mends them. *Kind* is its name in JSON.
+"""
+
+FINDINGS_END = """\
+## Fixes
+
+Each is one step to undo. *Fix All* does those that change nothing an artist may have meant, checks again, and says what it
+left.
+
+{actions}
+
+## As JSON
+
+`check --json` writes one object. Keys stay; new ones may come. `schema` is counted on when one goes or means another thing.
+
+| Key | What it is |
+| --- | --- |
+| `schema`, `file`, `blender` | version of this form (1), the file, the version of Blender |
+| `saved` | the file that `--fix` wrote, or null |
+| `scenes` | for each scene: `scene`, its name; `changes`, what `--fix` changed, in sentences; `findings` |
+| `kind`, `severity` | of a finding: as above; `wrong picture`, `slow` or `note` |
+| `objects` | names of all that is concerned: what the finding is about first |
+| `text`, `shows`, `remedy` | what is wrong, after the name; what the picture would show; what to do |
+| `faces`, `point` | polygons of the evaluated mesh, and a point in the world (scene units), or null |
+| `fix` | null, or `action`, `names` of what it changes, `value`, `path` and whether it is `safe` |
 """
 
 
@@ -132,7 +167,17 @@ def _colour(preset: Preset) -> str:
     return f"{', '.join(f'{component:.2g}' for component in colour)} at {depth * 100:g} cm"
 
 
-PAGES = {"parameters.md": parameters_page, "presets.md": presets_page}
+def findings_page() -> str:
+    """Return the page of all kinds of findings, by severity, and of what mends them."""
+    parts = [FINDINGS_INTRODUCTION]
+    for severity in Severity:
+        rows = [(f"`{kind.key}`", kind.shows) for kind in KINDS.values() if kind.severity == severity]
+        parts += [f"## {severity.value.capitalize()}\n", _table([("Kind", "What the picture shows"), *rows])]
+    actions = "".join(f"- **{action.value}** (`{action.name}`)\n" for action in Action)
+    return "\n".join((*parts, FINDINGS_END.format(actions=actions.rstrip())))
+
+
+PAGES = {"parameters.md": parameters_page, "presets.md": presets_page, "findings.md": findings_page}
 
 
 def make() -> None:
