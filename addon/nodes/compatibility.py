@@ -43,7 +43,7 @@ def blender_problem(version: tuple[int, int, int] | None = None) -> str | None:
             f"Blender {name} is too old for nested dielectrics: its shaders cannot read other objects' media; "
             "use Blender 5.2 LTS or 5.3"
         )
-    if takes_front_ior() != shows_front_ior():
+    if has_osl() and takes_front_ior() != shows_front_ior():
         return (
             f"Blender {name} takes indices of refraction in a way that files cannot tell, so pictures would be wrong; "
             "use Blender 5.2 LTS or 5.3, or a newer version of the extension"

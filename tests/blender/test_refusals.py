@@ -47,6 +47,13 @@ def test_a_blender_whose_way_with_indices_files_cannot_tell_is_refused(monkeypat
         nd.prepare(bpy.context.scene)
 
 
+def test_a_blender_without_open_shading_language_needs_no_closures_of_its(monkeypatch):
+    monkeypatch.setattr(compatibility, "takes_front_ior", lambda: None)
+    assert "in a way that files cannot tell" in compatibility.blender_problem()
+    monkeypatch.setattr(compatibility, "has_osl", lambda: False)
+    assert compatibility.blender_problem() is None
+
+
 def test_preparing_a_scene_in_an_unsuitable_blender_raises_and_changes_nothing(monkeypatch):
     new_scene()
     bpy.context.scene.cycles.shading_system = False
