@@ -21,6 +21,7 @@ if "bpy" not in sys.modules:
 from .analysis.surroundings import clear_analysis
 from .checking.check import check
 from .checking.finding import Finding
+from .checking.priority_suggestions import accept_priorities, suggest_priorities
 from .model.parameter import ParameterError
 from .nodes.compatibility import UnsupportedError
 from .preparation.live import analyse
@@ -39,6 +40,7 @@ __all__ = [
     "ParameterError",
     "Preparation",
     "UnsupportedError",
+    "accept_priorities",
     "add_passes",
     "analyse",
     "assign",
@@ -52,6 +54,7 @@ __all__ = [
     "register",
     "set_priority",
     "set_shadow_caustics",
+    "suggest_priorities",
     "unregister",
     "update_materials",
 ]

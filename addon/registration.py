@@ -19,6 +19,7 @@ from .ui.operators import (
     light_operators,
     preparation_operators,
     priority_operators,
+    suggestion_operators,
     update_operators,
 )
 from .ui.panels import (
@@ -49,6 +50,7 @@ CLASSES = (
     *object_menu.CLASSES,
     *add_menu.CLASSES,
     *priority_operators.CLASSES,
+    *suggestion_operators.CLASSES,
     *preparation_operators.CLASSES,
     *media_list_panel.CLASSES,
     *scene_panels.CLASSES,

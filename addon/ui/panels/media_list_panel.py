@@ -13,6 +13,7 @@ from ..drawing import draw_text
 from ..media_list import Line, is_open, listed_lines, listed_media
 from ..media_rows import active_line, make_places
 from ..operators.priority_operators import OpenMaterial, PriorityMove, PriorityOwn, SelectObjects, SpaceOut
+from ..operators.suggestion_operators import SuggestPriorities
 
 NAME_WIDTH = 0.68
 """Part of a row that a name takes; the rest holds a priority of four digits at the default width of the sidebar."""
@@ -73,6 +74,7 @@ def draw_media(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         arrows.operator(PriorityMove.bl_idname, text="", icon=icon).direction = direction
     buttons.operator(SelectObjects.bl_idname)
     buttons.operator(SpaceOut.bl_idname, text="Space Out")
+    layout.operator(SuggestPriorities.bl_idname, text="Suggest Priorities...")
     if line is not None:
         draw_text(layout, context, f"{line.row.owner.name} {in_words(listed_media(scene).rows, line.row)}", "INFO")
 
