@@ -217,6 +217,7 @@ def test_the_dialog_shows_each_number_with_its_reason_to_tick(registered, capfd)
         SuggestPriorities.draw(SimpleNamespace(layout=panel.layout, suggestions=rows), context)
 
     dialog = SimpleNamespace(draw=draw, bl_label="")
-    labels, names, _ = texts(draw_panel(dialog, 300, capfd.readouterr))
-    assert list(names) == ["Air_Bubble", "Water"]
-    assert "40 \N{RIGHTWARDS ARROW} 0 because it is a bubble and 'Tumbler' is a solid" in labels
+    drawn = draw_panel(dialog, 300, capfd.readouterr)
+    labels, *_ = texts(drawn)
+    assert [arguments[1] for name, arguments, _ in drawn if name == "prop"] == ["is_accepted"] * 2
+    assert "Air_Bubble 40 \N{RIGHTWARDS ARROW} 0 because it is a bubble and 'Tumbler' is a solid" in labels

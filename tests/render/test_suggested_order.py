@@ -3,7 +3,9 @@
 import math
 from itertools import pairwise
 
-import bmesh
+import bpy  # noqa: F401  before bmesh and mathutils, which live inside it
+
+import bmesh  # isort: skip
 import numpy as np
 import pytest
 from mathutils import Matrix

@@ -72,8 +72,10 @@ class SuggestPriorities(bpy.types.Operator):
     def draw(self, context: bpy.types.Context) -> None:
         for row in self.suggestions:
             box = self.layout.column(align=True)
-            line = box.split(factor=0.72, align=True)
-            line.prop(row, "is_accepted", text=row.name, icon="OBJECT_DATA" if row.is_object else "MATERIAL")
+            line = box.split(factor=0.72)
+            names = line.row()
+            names.prop(row, "is_accepted", text="")
+            names.label(text=row.name, icon="OBJECT_DATA" if row.is_object else "MATERIAL")
             line.label(text=f"{row.before} \N{RIGHTWARDS ARROW} {row.after}")
             lines = box.column(align=True)
             lines.active = row.is_accepted
