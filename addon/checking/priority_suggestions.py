@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Hashable, Iterable, Iterator
 from dataclasses import dataclass
 
 import bpy
@@ -14,7 +14,7 @@ from ..analysis.session import forget_unused
 from ..geometry import meshes
 from ..geometry.pairs import candidate_pairs, relate_pairs
 from ..geometry.solids import PlacedSolid
-from ..model.media_kinds import density_of, kind_of
+from ..model.media_kinds import Kind, density_of, kind_of
 from ..model.priority_suggestion import suggested
 from ..model.winning_rules import Overlap, Placed
 from ..nodes.lookups import caching_nodes
@@ -49,18 +49,19 @@ def suggest_priorities(scene: bpy.types.Scene) -> tuple[Suggestion, ...]:
     What :func:`~nested_dielectric.model.priority_suggestion.suggested` says of them. Media that are not closed, that renders do
     not show or that are not in the first view layer overlap nothing here. What cannot be changed stays, and others go by it.
     """
-    rows = priority_rows(all_objects(scene))
+    rows = _rows(scene)
     objects = [obj for row in rows for obj in row.objects]
     instances = list(_instances(scene))
     overlaps, held = _overlaps(instances, {obj: index for index, obj in enumerate(objects)})
     volumes = {obj: _volume(place) for obj, place in reversed(instances)}
     forget_unused()
     materials_held = {medium_material(objects[index]) for index in held}
-    facts = all_material_facts()
+    natures = {
+        material: _nature(material, facts, material in materials_held)
+        for material, facts in all_material_facts().items()
+    }
     bodies = [
-        _placed(row, obj, facts[medium_material(obj)], medium_material(obj) in materials_held, volumes.get(obj, 0.0))
-        for row in rows
-        for obj in row.objects
+        _placed(row, obj, natures[medium_material(obj)], volumes.get(obj, 0.0)) for row in rows for obj in row.objects
     ]
     return tuple(
         Suggestion(
@@ -76,7 +77,7 @@ def accept_priorities(scene: bpy.types.Scene, suggestions: Iterable[Suggestion])
     :return: what was changed and what could not be, in sentences.
     """
     changes, kept = [], []
-    owners = {owner for row in priority_rows(all_objects(scene)) for owner in (row.owner, *row.objects)}
+    owners = {owner for row in _rows(scene) for owner in (row.owner, *row.objects)}
     for each in suggestions:
         reason = _obstacle(each, owners)
         if reason:
@@ -85,6 +86,14 @@ def accept_priorities(scene: bpy.types.Scene, suggestions: Iterable[Suggestion])
             set_number(each.owner, each.after)
             changes.append(f"{each.owner.name}: {each.before} -> {each.after}")
     return changes, kept
+
+
+def _rows(scene: bpy.types.Scene) -> tuple[Row, ...]:
+    """Return the places that all media of a scene have in its order, with those that only nodes instance."""
+    layer = scene.view_layers[0]
+    layer.update()
+    shown = {instance.object.original for instance in layer.depsgraph.object_instances}
+    return priority_rows(all_objects(scene) | {obj for obj in shown if not is_cut_surface(obj)})
 
 
 def _obstacle(suggestion: Suggestion, owners: set[Owner]) -> str:
@@ -99,37 +108,57 @@ def _obstacle(suggestion: Suggestion, owners: set[Owner]) -> str:
     return f"keeps {number}, because it {reason}" if reason else ""
 
 
-def _placed(row: Row, obj: bpy.types.Object, facts: MaterialFacts, is_held: bool, volume: float) -> Placed:
-    """Return what matters of a medium for its priority."""
-    material = medium_material(obj)
+@dataclass(frozen=True)
+class _Nature:
+    """What a material fills its objects with, as :class:`Placed` has it."""
+
+    medium: Hashable
+    kind: Kind | None
+    density: float | None
+
+
+def _nature(material: bpy.types.Material, facts: MaterialFacts, is_held: bool) -> _Nature:
+    """Return what a material fills its objects with.
+
+    :param is_held: one of them stands within the box of something that it touches.
+    """
     socket = dielectric_node(material).inputs["IOR"]
     index = None if socket.is_linked else socket.default_value
     preset = preset_of(material)
+    medium = material.session_uid if facts.values is None else facts.values
+    return _Nature(medium, kind_of(preset, index, is_held), density_of(preset, index))
+
+
+def _placed(row: Row, obj: bpy.types.Object, nature: _Nature, volume: float) -> Placed:
+    """Return what matters of a medium for its priority."""
     # Objects may leave a material whose number cannot be changed.
-    owner = row.owner if not hindrance(row.owner) else obj
+    owner = obj if hindrance(row.owner) else row.owner
     return Placed(
         obj.name_full,
         owner,
         row.priority,
-        material.session_uid if facts.values is None else facts.values,
-        kind_of(preset, index, is_held),
-        density_of(preset, index),
+        nature.medium,
+        nature.kind,
+        nature.density,
         volume,
         bool(hindrance(owner)),
     )
 
 
 def _instances(scene: bpy.types.Scene) -> Iterator[tuple[bpy.types.Object, PlacedSolid]]:
-    """Yield the closed media of a scene, with each of their places."""
-    layer = scene.view_layers[0]
-    layer.update()
+    """Yield the closed media of a scene, with each of their places, once its first view layer is up to date.
+
+    What an object's nodes instance that is no object is left out: it may be another mesh of another medium each time.
+    """
     solid_cache.forget_all()
-    for instance in layer.depsgraph.object_instances:
+    for instance in scene.view_layers[0].depsgraph.object_instances:
         evaluated = instance.object
         obj = evaluated.original
         if evaluated.type not in SOLID_TYPES or evaluated.type != obj.type or is_cut_surface(obj):
             continue
         if not is_rendered(obj) or medium_material(obj) is None:
+            continue
+        if instance.is_instance and instance.parent.original == obj:
             continue
         matrix = np.array(instance.matrix_world, dtype=np.float64)
         if not np.isfinite(matrix).all():

@@ -83,7 +83,7 @@ def _units(bodies: Sequence[Placed], overlaps: Iterable[Overlap], orders: Iterab
         parent[root(index)] = root(first.setdefault(body.owner, index))
     for overlap in overlaps:
         one, other = bodies[overlap.one], bodies[overlap.other]
-        if (one.medium, one.priority) == (other.medium, other.priority) and one.is_fixed == other.is_fixed:
+        if (one.medium, one.priority) == (other.medium, other.priority):
             parent[root(overlap.one)] = root(overlap.other)
     groups: dict[int, list[int]] = {}
     for index in range(len(bodies)):

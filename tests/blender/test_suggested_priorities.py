@@ -99,6 +99,39 @@ def test_instances_are_looked_at_where_they_stand(scene):
     assert not told(scene)
 
 
+def test_what_nodes_instance_is_looked_at_where_it_is_an_object(scene):
+    add_box("Drink", (0, 0, 0), (1, 1, 1), preset("water", 10))
+    bubble = add_sphere("Bubble", 0.05, preset("air_bubble", 40), segments=12)
+    scene.collection.objects.unlink(bubble)
+    points = add_box("Points", (0.3, 0.3, 0.3), (0.6, 0.6, 0.6), preset("ice", 5))
+    tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
+    for way in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
+    start, end, scatter, info, cube, join = (
+        tree.nodes.new(kind)
+        for kind in (
+            "NodeGroupInput",
+            "NodeGroupOutput",
+            "GeometryNodeInstanceOnPoints",
+            "GeometryNodeObjectInfo",
+            "GeometryNodeMeshCube",
+            "GeometryNodeGeometryToInstance",
+        )
+    )
+    info.inputs["Object"].default_value, info.inputs["As Instance"].default_value = bubble, True
+    tree.links.new(start.outputs[0], scatter.inputs["Points"])
+    tree.links.new(info.outputs["Geometry"], scatter.inputs["Instance"])
+    tree.links.new(cube.outputs["Mesh"], join.inputs[0])  # a cube that is no object, and reaches out of the drink
+    both = tree.nodes.new("GeometryNodeJoinGeometry")
+    for node in (scatter, join):
+        tree.links.new(node.outputs[0], both.inputs[0])
+    tree.links.new(both.outputs[0], end.inputs[0])
+    points.modifiers.new("Scatter", "NODES").node_group = tree
+    assert told(scene) == [("Air_Bubble", 40, 0, "it lies inside 'Drink'")]
+    assert nd.accept_priorities(scene, nd.suggest_priorities(scene))[1] == []
+    assert not told(scene)
+
+
 def test_a_mesh_is_taken_as_modifiers_have_it_and_an_open_one_overlaps_nothing(scene):
     add_box("Glass", (0, 0, 0), (1, 1, 1), preset("glass", 30))
     drink = add_box("Drink", (2, 0, 0), (3, 1, 1), preset("water", 10))
@@ -106,6 +139,9 @@ def test_a_mesh_is_taken_as_modifiers_have_it_and_an_open_one_overlaps_nothing(s
     array = drink.modifiers.new("Array", "ARRAY")
     array.relative_offset_displace[0] = -1.5
     assert len(told(scene)) == 1
+    drink.scale.z = 0.0
+    assert not told(scene)
+    drink.scale.z = 1.0
     drink.vertex_groups.new(name="Corner").add([0], 1.0, "REPLACE")
     mask = drink.modifiers.new("Mask", "MASK")
     mask.vertex_group, mask.invert_vertex_group = "Corner", True
@@ -128,6 +164,19 @@ def test_what_has_keyframes_stays_and_others_go_by_it(scene):
     bpy.data.objects["Tumbler"]["nd_priority"] = 30
     bpy.data.objects["Tumbler"].keyframe_insert('["nd_priority"]')
     assert told(scene) == [("Water", 10, 35, "it is a liquid and 'Tumbler' is a solid")]
+
+
+def test_an_object_of_a_material_that_cannot_be_changed_gets_a_number_of_its_own(scene):
+    glass, water = preset("glass"), preset("water", 5)
+    water.node_tree.nodes["Nested Dielectric"].inputs["Priority"].keyframe_insert("default_value")
+    glass.node_tree.nodes["Nested Dielectric"].inputs["Priority"].keyframe_insert("default_value")
+    add_box("Tumbler", (-1, -1, 0), (1, 1, 0.3), glass)
+    add_box("Drink", (-0.9, -0.9, 0.2), (0.9, 0.9, 1.5), water)
+    add_box("Puddle", (5, 5, 0), (6, 6, 0.1), water)
+    (suggestion,) = nd.suggest_priorities(scene)
+    assert suggestion.owner in (bpy.data.objects["Tumbler"], bpy.data.objects["Drink"])
+    assert nd.accept_priorities(scene, [suggestion])[1] == []
+    assert not told(scene) and nd.get_priority(bpy.data.objects["Puddle"]) == 5
 
 
 def test_what_changed_since_it_was_suggested_or_cannot_be_changed_is_said_and_kept(scene):

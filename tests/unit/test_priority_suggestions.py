@@ -118,6 +118,23 @@ def test_what_cannot_be_changed_stays_and_the_others_go_by_it():
     )
 
 
+def test_what_cannot_be_one_number_between_two_that_are_fixed_is_two():
+    bodies = [
+        body("Glass", 10, SOLID, is_fixed=True),
+        body("Water", 11, LIQUID, is_fixed=True),
+        body("Cube at the glass", 20, ICE, "Ice"),
+        body("Cube in the water", 20, ICE, "Ice"),
+    ]
+    after = accepted(bodies, suggested(bodies, [Overlap(2, 0), Overlap(3, 1)]))
+    assert [each.priority for each in after] == [10, 11, 20, 10]
+
+
+def test_numbers_without_room_for_what_is_between_them_do_not_both_stay():
+    assert fewest_changes([3, 2, 4], [3, 1, 3], [(0, 1), (1, 2)]) == {0}
+    assert fewest_changes([3, 2, 5], [3, 1, 3], [(0, 1), (1, 2)]) == {1}
+    assert fewest_changes([0, 0, MAX_PRIORITY], [1, 1, 1], [(0, 1), (2, 1)]) == {1, 2}
+
+
 # For any scene
 
 kinds = st.one_of(st.none(), st.sampled_from(Kind))

@@ -12,6 +12,7 @@ from ..operators.dispersion_operators import DispersionModel, SellmeierIor, Spec
 from ..operators.light_operators import AddPasses, LightCarrier, ShadowCaustics
 from ..operators.preparation_operators import ClearAnalysis, CutSurfaces, KeepCut, Prepare, PutBack, RenderWith
 from ..operators.priority_operators import PriorityMove, PriorityOwn, SelectObjects, SpaceOut
+from ..operators.suggestion_operators import SuggestPriorities
 from ..operators.update_operators import UpdateMaterials
 from ..preferences import FIT, MEASURED
 from ..presets.own_preset_operators import SavePreset
@@ -43,6 +44,7 @@ class ObjectMenu(bpy.types.Menu):
             layout.operator(PriorityMove.bl_idname, text=text).direction = direction
         layout.operator(PriorityOwn.bl_idname, text="Priority: Own or Material's")
         layout.operator(SpaceOut.bl_idname)
+        layout.operator(SuggestPriorities.bl_idname, text="Suggest Priorities...")
         layout.operator(SelectObjects.bl_idname, text="Select Objects of Medium")
         layout.separator()
         layout.operator(Prepare.bl_idname)
