@@ -103,11 +103,12 @@ def test_what_nodes_instance_is_looked_at_where_it_is_an_object(scene):
     add_box("Drink", (0, 0, 0), (1, 1, 1), preset("water", 10))
     bubble = add_sphere("Bubble", 0.05, preset("air_bubble", 40), segments=12)
     scene.collection.objects.unlink(bubble)
+    add_box("Pane", (1.1, 0, 0), (1.3, 1, 1), preset("glass", 20))
     points = add_box("Points", (0.3, 0.3, 0.3), (0.6, 0.6, 0.6), preset("ice", 5))
     tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
     for way in ("INPUT", "OUTPUT"):
         tree.interface.new_socket("Geometry", in_out=way, socket_type="NodeSocketGeometry")
-    start, end, scatter, info, cube, join = (
+    start, end, scatter, info, cube, others = (
         tree.nodes.new(kind)
         for kind in (
             "NodeGroupInput",
@@ -115,15 +116,18 @@ def test_what_nodes_instance_is_looked_at_where_it_is_an_object(scene):
             "GeometryNodeInstanceOnPoints",
             "GeometryNodeObjectInfo",
             "GeometryNodeMeshCube",
-            "GeometryNodeGeometryToInstance",
+            "GeometryNodeInstanceOnPoints",
         )
     )
     info.inputs["Object"].default_value, info.inputs["As Instance"].default_value = bubble, True
     tree.links.new(start.outputs[0], scatter.inputs["Points"])
     tree.links.new(info.outputs["Geometry"], scatter.inputs["Instance"])
-    tree.links.new(cube.outputs["Mesh"], join.inputs[0])  # a cube that is no object, and reaches out of the drink
+    tree.links.new(start.outputs[0], others.inputs["Points"])
+    tree.links.new(
+        cube.outputs["Mesh"], others.inputs["Instance"]
+    )  # cubes that are no objects, and reach out of the drink
     both = tree.nodes.new("GeometryNodeJoinGeometry")
-    for node in (scatter, join):
+    for node in (scatter, others):
         tree.links.new(node.outputs[0], both.inputs[0])
     tree.links.new(both.outputs[0], end.inputs[0])
     points.modifiers.new("Scatter", "NODES").node_group = tree
