@@ -127,7 +127,7 @@ def test_what_nodes_instance_is_looked_at_where_it_is_an_object(scene):
         cube.outputs["Mesh"], others.inputs["Instance"]
     )  # cubes that are no objects, and reach out of the drink
     both = tree.nodes.new("GeometryNodeJoinGeometry")
-    for node in (scatter, others):
+    for node in (start, scatter, others):
         tree.links.new(node.outputs[0], both.inputs[0])
     tree.links.new(both.outputs[0], end.inputs[0])
     points.modifiers.new("Scatter", "NODES").node_group = tree
