@@ -79,7 +79,11 @@ def accept_priorities(scene: bpy.types.Scene, suggestions: Iterable[Suggestion])
     changes, kept = [], []
     owners = {owner for row in _rows(scene) for owner in (row.owner, *row.objects)}
     for each in suggestions:
-        reason = _obstacle(each, owners)
+        try:
+            reason = _obstacle(each, owners)
+        except ReferenceError:
+            kept.append("A medium has been deleted; ask for suggestions again")
+            continue
         if reason:
             kept.append(f"{each.owner.name!r} {reason}")
         else:

@@ -199,6 +199,8 @@ def test_what_changed_since_it_was_suggested_or_cannot_be_changed_is_said_and_ke
     )
     bpy.data.objects.remove(bpy.data.objects["Bubble"])
     assert "is no medium of this scene any more" in nd.accept_priorities(scene, suggestions)[1][0]
+    bpy.data.materials.remove(bubble)
+    assert "has been deleted" in nd.accept_priorities(scene, suggestions)[1][0]
 
 
 def test_a_suggestion_reads_as_a_sentence(scene):
