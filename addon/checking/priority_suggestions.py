@@ -80,15 +80,15 @@ def accept_priorities(scene: bpy.types.Scene, suggestions: Iterable[Suggestion])
     owners = {owner for row in _rows(scene) for owner in (row.owner, *row.objects)}
     for each in suggestions:
         try:
-            reason = _obstacle(each, owners)
+            name, reason = each.owner.name, _obstacle(each, owners)
         except ReferenceError:
             kept.append("A medium has been deleted; ask for suggestions again")
             continue
         if reason:
-            kept.append(f"{each.owner.name!r} {reason}")
+            kept.append(f"{name!r} {reason}")
         else:
             set_number(each.owner, each.after)
-            changes.append(f"{each.owner.name}: {each.before} -> {each.after}")
+            changes.append(f"{name}: {each.before} -> {each.after}")
     return changes, kept
 
 
