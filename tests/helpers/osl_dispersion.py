@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from osl_interfaces import FEW, reflectance
 from osl_measure import Draw, Function, dot
+from osl_values import BACKFACING
 
 from nested_dielectric.model.contract import DispersionModel
 
@@ -169,6 +170,39 @@ s.from.disperses = 0; s.to.disperses = (int)splits;
 PathSpectrum path = {1, 0.0, 0, 0};
 """
 
+OPTICS = """
+Interface s;
+s.from.ior = a; s.to.ior = z;
+Incidence at;
+at.eta = n2 / n1;
+Optics o = make_optics(s, at, (int)front, thickness, film);
+r[0] = o.ior; r[1] = o.film_ior; r[2] = o.film_thickness;
+split_by_closures(s, o);
+r[3] = o.ior; r[4] = o.inverse_abbe;
+"""
+
+
+def optics(back, front, n1, n2, b1, b2, thickness, film):
+    """Return indices as closures take them: by the ray, or as met from the front; and split from the front."""
+    turned = (back > 0.0) & (front > 0.0)
+    outer, inner = (np.where(back > 0.0, each, other) for each, other in ((n2, n1), (n1, n2)))
+    spread = [np.where(back > 0.0, each, other) for each, other in ((b2, b1), (b1, b2))]
+    return (
+        np.where(turned, n1 / n2, n2 / n1),
+        film / np.where(turned, n2, n1),
+        thickness,
+        *dispersing(outer, inner, *spread),
+    )
+
+
+def optics_terms(back, n1, n2, b1, b2, **inputs):
+    """Return sizes: those of the ratio's number are of differences."""
+    outer, inner = (np.where(back > 0.0, each, other) for each, other in ((n2, n1), (n1, n2)))
+    spread = [np.where(back > 0.0, each, other) for each, other in ((b2, b1), (b1, b2))]
+    plain = optics(back=back, n1=n1, n2=n2, b1=b1, b2=b2, **inputs)
+    return *plain[:3], *dispersing_terms(outer, inner, *spread)
+
+
 FUNCTIONS = (
     Function(
         "sanitized_ior",
@@ -293,5 +327,26 @@ FUNCTIONS = (
         FEW,
         codes=("first", "second", "splits"),
         covers=("splits_light", "relative_ior", "air"),
+    ),
+    Function(
+        "make_optics",
+        "closures.h",
+        lambda d: (
+            pair(d)
+            | {
+                "back": d.choice(0.0, 1.0),
+                "front": d.choice(0.0, 1.0),
+                "thickness": d.linear(0.0, 1e5),
+                "film": d.logarithmic(1.0, 100.0),
+            }
+        ),
+        PAIR + OPTICS,
+        optics,
+        8.0,
+        FEW,
+        codes=("back", "front"),
+        terms=optics_terms,
+        more=("contract.h", BACKFACING),
+        covers=("split_by_closures",),
     ),
 )

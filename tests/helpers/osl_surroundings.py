@@ -6,6 +6,7 @@ import numpy as np
 from osl_interfaces import FEW
 from osl_measure import Draw, Function
 from osl_media import CHOICE
+from osl_values import BACKFACING
 
 from nested_dielectric.model.contract import HIGHEST_PACKED_PRIORITY, Exterior, Facts, pack_facts
 
@@ -201,5 +202,24 @@ FUNCTIONS = (
         CHOICE,
         codes=("priority", "own", "valid", "ior", "other_ior", "tint", "other_tint", "depth", "other_depth"),
         covers=("nothing_around",),
+    ),
+    Function(
+        "exterior_priority",
+        "interface.h",
+        lambda d: {
+            "valid": d.choice(0.0, 1.0),
+            "back": d.choice(0.0, 1.0),
+            "p1": d.choice(0.0, 1.0, AIR),
+            "p2": d.choice(AIR, 0.0, 1.0),
+        },
+        "Interface s; s.valid = (int)valid; s.from = air(); s.to = air(); s.from.priority = p1; s.to.priority = p2;"
+        "r[0] = exterior_priority(s);",
+        lambda valid, back, p1, p2: [
+            np.where((valid > 0.0) & (np.where(back > 0.0, p2, p1) < AIR), np.where(back > 0.0, p2, p1), -1.0)
+        ],
+        0.0,
+        CHOICE,
+        codes=("valid", "back", "p1", "p2"),
+        more=("contract.h", BACKFACING),
     ),
 )

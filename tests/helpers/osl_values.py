@@ -25,6 +25,10 @@ LEAST_SIDE = 4
 GLOBALS = {"I": "vector", "N": "normal", "P": "point"}
 """Of OSL, that headers read: an input of that name takes its place."""
 
+BACKFACING = """int asked_backfacing() { vector x = vector(0.0); getattribute("given_back", x); return (int)x[0]; }
+#define backfacing() asked_backfacing()"""
+"""Lines of OSL before a header that take the side from an input ``back``."""
+
 VECTOR = ("FLOAT_VECTOR", "vector", "VECTOR", "Vector")
 """Of inputs of up to three components: attribute and its field, kind of socket, output of an Attribute node. An attribute of
 one number would lose its last bit: Cycles takes the mean of three."""

@@ -1,4 +1,4 @@
-"""Geometry by many at once is geometry by one after the other: sets of numbers, boxes, triangles."""
+"""Geometry by many at once is geometry by one after the other: sets of numbers, boxes, triangles, planes."""
 
 import itertools
 from collections import Counter
@@ -6,10 +6,18 @@ from collections import Counter
 import bpy  # noqa: F401  mathutils comes with it
 import numpy as np
 import property_tests
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from random_solids import apart, seeds
+from random_solids import apart, points, seeds, sizes
+from solids import grid_box, joined
 
+from nested_dielectric.geometry.coplanar import (
+    LEAST_COSINE,
+    coincident_triangles,
+    flat_sides,
+    parallel_pairs,
+    share_a_plane,
+)
 from nested_dielectric.geometry.hierarchy import BoxHierarchy, leaves_in_boxes, morton_order, overlapping_leaves
 from nested_dielectric.geometry.numbering import LARGEST_TABLE, compact_numbers, group_by_number, index_ranges
 from nested_dielectric.geometry.pairs import overlapping_boxes
@@ -211,3 +219,77 @@ def test_what_of_a_triangle_lies_above_another_has_the_area_of_what_both_share_i
     for i in np.flatnonzero(np.array(expected) > 1e-6):
         assert one[i, :, 2].min() - 1e-9 <= (up[i] * heights[:, i]).min()
         assert (up[i] * heights[:, i]).max() <= one[i, :, 2].max() + 1e-9
+
+
+# Planes
+
+
+def in_a_plane(seed: int, count: int = 40) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of triangles in the plane z = 0, of which half share some of it and none by less than a thousandth."""
+    one, other = triangle_pairs(seed, count)
+    one[:, :, 2] = other[:, :, 2] = 0.0
+    areas = [common_area(p[:, :2], q[:, :2]) for p, q in zip(one, other)]
+    clear = [area == 0.0 or area > 1e-3 for area in areas]
+    return one[clear], other[clear]
+
+
+@settings(max_examples=property_tests.FEW)
+@given(seeds, st.sampled_from((1e-6, 1e-4)), st.sampled_from((0.0, 0.5, 2.0)))
+def test_triangles_share_a_plane_where_they_overlap_in_it_within_the_tolerance(seed, tolerance, height):
+    one, other = in_a_plane(seed)
+    expected = [common_area(p[:, :2], q[:, :2]) > 0.0 and height <= 1.0 for p, q in zip(one, other)]
+    other[:, :, 2] += height * tolerance
+    number = np.arange(len(one))
+    found = share_a_plane(stacked(one), number, stacked(other), number, np.full(len(one), tolerance))
+    assert found.tolist() == expected
+
+
+@given(seeds)
+def test_pairs_are_parallel_where_the_angle_between_them_is_small(seed):
+    rng = np.random.default_rng(seed)
+    one, _ = triangle_pairs(seed, 60)
+    angles = rng.uniform(0.0, 0.1, len(one))
+    axes = (one[:, 1] - one[:, 0]) / np.linalg.norm(one[:, 1] - one[:, 0], axis=1, keepdims=True)
+    offset = one - one[:, :1]
+    along = np.einsum("kcx,kx->kc", offset, axes)[..., None] * axes[:, None]
+    turned = along + np.cos(angles)[:, None, None] * (offset - along)
+    turned += np.sin(angles)[:, None, None] * np.cross(axes[:, None], offset)
+    turned = turned[:, [0, 2, 1]] if rng.random() < 0.5 else turned
+    number = np.arange(len(one))
+    found, _, cosine, left = parallel_pairs(stacked(one), number, stacked(turned), number, angles)
+    assume(np.all(np.abs(np.cos(angles) - LEAST_COSINE) > 1e-9))
+    assert found.tolist() == np.flatnonzero(np.cos(angles) >= LEAST_COSINE).tolist()
+    assert np.allclose(np.abs(cosine), np.cos(angles[found]), atol=1e-9) and np.array_equal(left, angles[found])
+
+
+@settings(max_examples=property_tests.FEW)
+@given(seeds)
+def test_a_triangle_lies_on_others_as_a_whole_where_they_hold_its_corners_and_centre(seed):
+    one, other = in_a_plane(seed, 9)
+    i, j = (each.ravel() for each in np.indices((len(one), len(other))))
+    shared = np.array([common_area(one[a][:, :2], other[b][:, :2]) > 0.0 for a, b in zip(i, j)])
+    a, b = stacked(one), stacked(other)
+    cosine = np.einsum("xk,xk->k", a[3][:, i], b[3][:, j])
+    found, signs, whole = coincident_triangles(a, i, b, j, cosine, shared, np.full(len(i), 1e-9))
+    corners = np.concatenate([one, one.mean(axis=1, keepdims=True)], axis=1)[:, :, :2]
+    held = [all(any(holds(triangle[:, :2], place) for triangle in other) for place in places) for places in corners]
+    touched = shared.reshape(len(one), -1).any(axis=1)
+    assert found.tolist() == np.flatnonzero(touched | np.array(held)).tolist()
+    assert whole.tolist() == np.array(held)[found].tolist() and set(signs.tolist()) <= {-1, 1}
+
+
+def holds(triangle: np.ndarray, place: np.ndarray) -> bool:
+    """Whether a triangle holds a point of its plane, (3, 2) and (2,), by barycentric coordinates (Möbius 1827)."""
+    u, v = np.linalg.solve(
+        np.stack([triangle[1] - triangle[0], triangle[2] - triangle[0]], axis=1), place - triangle[0]
+    )
+    return bool(u >= 0.0 and v >= 0.0 and u + v <= 1.0)
+
+
+@given(st.lists(st.tuples(points, sizes, st.integers(1, 4)), min_size=1, max_size=3), seeds)
+def test_flat_sides_of_boxes_are_six_however_they_are_divided(some, seed):
+    whole = joined(*(grid_box(corner, corner + size, cells) for corner, size, cells in some))
+    order = np.random.default_rng(seed).permutation(len(whole.triangles))
+    sides = flat_sides(Solid(whole.vertices, whole.triangles[order]))
+    expected = Counter(2 * cells * cells for _, _, cells in some for _ in range(6))
+    assert Counter(np.unique(sides, return_counts=True)[1].tolist()) == expected

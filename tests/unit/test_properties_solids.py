@@ -226,13 +226,13 @@ def test_the_mean_way_through_a_box_is_four_volumes_by_its_surface(solid, seed):
 
 
 @settings(max_examples=property_tests.FEW)
-@given(st.floats(0.01, 1.0), st.floats(0.02, 1.0), st.integers(1, 3), seeds)
-def test_a_face_may_move_as_far_as_the_next_wall_before_it(gap, reach, cells, seed):
-    """Two boxes face each other over a gap; a third is beside them, before nothing."""
+@given(st.floats(0.01, 1.0), st.floats(0.02, 1.0), st.integers(1, 3), st.sampled_from((-0.5, 2.0)), seeds)
+def test_a_face_may_move_as_far_as_the_next_wall_before_it(gap, reach, cells, width, seed):
+    """A box faces a block or a post over a gap; a third is beside them, before nothing."""
     turn = random_matrix(np.random.default_rng(seed), 1.0)
     turn[:3, :3] = np.linalg.qr(turn[:3, :3])[0]
     one = grid_box((-1, -1, -1), (1, 1, 0), cells)
-    other, aside = grid_box((-0.5, -2, gap), (2, 0.7, 2), cells), grid_box((1.2, -1, -1), (3, 1, gap / 2), cells)
+    other, aside = grid_box((-0.9, -0.8, gap), (width, -0.3, 2), cells), grid_box((1.2, -1, -1), (3, 1, gap / 2), cells)
     bodies = [Body(each, turn, number, number) for number, each in enumerate((one, other, aside))]
     faces = np.flatnonzero((one.vertices[one.triangles][:, :, 2] == 0.0).all(axis=1))
     assert Walls(bodies).clearance(0, faces, np.ones(len(faces)), reach) == pytest.approx(min(gap, reach), rel=1e-6)
