@@ -84,8 +84,11 @@ def test_winding_numbers_are_the_same_turned_mirrored_and_scaled(solid, seed, sc
     )
 
 
+large_boxes = st.builds(lambda corner, size: box(corner / 4.0 - 6.03, size + 8.0), points, sizes)
+
+
 @settings(max_examples=property_tests.FEW)
-@given(st.lists(st.builds(box, points, sizes), min_size=1, max_size=5), st.builds(box, points, sizes))
+@given(st.lists(st.builds(box, points, sizes), min_size=1, max_size=3), large_boxes)
 def test_islands_inside_a_body_are_those_whose_boxes_are(some, other):
     low, high = (np.array([end(each.vertices, axis=0) for each in some]) for end in (np.min, np.max))
     floor, ceiling = other.vertices.min(axis=0), other.vertices.max(axis=0)
@@ -240,16 +243,18 @@ def test_a_face_may_move_as_far_as_the_next_wall_before_it(gap, reach, cells, wi
     assert inwards == pytest.approx(1.0, rel=1e-6)
 
 
-@settings(max_examples=property_tests.FEW)
-@given(st.lists(st.tuples(points, sizes, st.integers(-1, 1)), min_size=1, max_size=4), st.builds(box, points, sizes))
-def test_what_rests_on_a_box_is_what_shares_part_of_its_top_or_another_side(some, foreign):
+def whole(low: int, high: int) -> st.SearchStrategy:
+    return st.tuples(*[st.integers(low, high)] * 3).map(np.array)
+
+
+coarse_boxes = st.builds(box, whole(-2, 2), whole(1, 3))
+
+
+@given(st.lists(coarse_boxes, min_size=1, max_size=4), coarse_boxes)
+def test_what_rests_on_a_box_is_what_shares_part_of_its_top_or_another_side(standing, foreign):
     """Boxes on a lattice share part of a plane or are apart by more than any tolerance."""
-    standing = [box(corner, size) for corner, size, _ in some]
-    expected = [
-        number
-        for number, each in enumerate(standing)
-        if share_a_side(each.vertices.min(axis=0), each.vertices.max(axis=0), foreign)
-    ]
+    ends = [(each.vertices.min(axis=0), each.vertices.max(axis=0)) for each in standing]
+    expected = [number for number, (low, high) in enumerate(ends) if share_a_side(low, high, foreign)]
     assert resting_surfaces(standing, foreign) == expected
 
 
