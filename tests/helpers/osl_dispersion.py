@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from osl_interfaces import FEW, reflectance
-from osl_measure import Draw, Function, dot
+from osl_interfaces import FEW
+from osl_measure import Draw, Function
 from osl_values import BACKFACING
 
 from nested_dielectric.model.contract import DispersionModel
@@ -124,51 +124,6 @@ def dispersing_terms(n1, n2, b1, b2):
     terms = ratio_terms(n1, n2, b1, b2, offset(LINE_F)) + ratio_terms(n1, n2, b1, b2, offset(LINE_C))
     return at_d, (terms + np.abs(number) * at_d) / np.abs(at_d - 1.0)
 
-
-def white_reflection(n1, n2, b1, b2, cos_i, means):
-    """Return whether white light is reflected as a whole, by which ratio, and in which colour."""
-    etas = ratio(n1[:, None], n2[:, None], b1[:, None], b2[:, None], means)
-    most = etas.max(axis=1)
-    denser = (ratio(n1, n2, b1, b2, offset(SHORTEST)) > 1.0) & (ratio(n1, n2, b1, b2, offset(LONGEST)) > 1.0)
-    strongest = np.maximum(reflectance(cos_i, most), 1e-12)
-    return denser * 1.0, most, reflectance(cos_i[:, None], etas) / strongest[:, None]
-
-
-def met(d: Draw) -> dict[str, np.ndarray]:
-    """Surfaces of two media that a camera looks at."""
-    n = d.direction()
-    return {
-        "I": d.around(n, d.linear(-0.2, 1.0)),
-        "N": n,
-        "artist": d.either(np.zeros((d.count, 3)), 3.0 * d.around(n, d.linear(0.9, 1.0))),
-        "n1": d.linear(1.0, 3.0),
-        "n2": d.linear(1.0, 3.0),
-        "first": d.choice(0.0, 5.0, 1e9),
-        "second": d.choice(0.0, 5.0, 1e9),
-        "splits": d.choice(0.0, 1.0),
-    }
-
-
-def meeting(I, N, artist, n1, n2, first, second, splits):  # noqa: E741  OSL's names
-    """Return how the light meets the surface, as Incidence lists it from ``n`` to ``exits``; a camera's path is no walk."""
-    has = np.linalg.norm(artist, axis=1) > 0.0
-    n = np.where(has[:, None], artist / np.maximum(np.linalg.norm(artist, axis=1), 1e-30)[:, None], N)
-    cos_i = np.clip(dot(I, n), 0.0, 1.0)
-    eta = n2 / n1
-    total = (eta - 1.0) * (eta + 1.0) + cos_i**2 < 0.0
-    return n, cos_i, eta, total * 1.0, (first < 1e9) * 1.0, (first == 1e9) * 1.0, (second == 1e9) * 1.0, splits
-
-
-INTERFACE = """
-Interface s;
-s.valid = 1;
-s.from = air();
-s.to = air();
-s.from.priority = first; s.to.priority = second;
-s.from.ior = a; s.to.ior = z;
-s.from.disperses = 0; s.to.disperses = (int)splits;
-PathSpectrum path = {1, 0.0, 0, 0};
-"""
 
 OPTICS = """
 Interface s;
@@ -293,40 +248,6 @@ FUNCTIONS = (
         8.0,
         "the number is a difference of two ratios over another",
         terms=lambda n1, n2, b1, b2: dispersing_terms(n1, n2, b1, b2),
-    ),
-    Function(
-        "reflected_white",
-        "wavelength_step.h",
-        lambda d: {
-            "n1": d.linear(1.0, 3.0),
-            "n2": d.linear(1.0, 3.0),
-            "b1": d.linear(0.0, 3e5),
-            "b2": d.linear(0.0, 3e5),
-            "cos_i": d.cosine(),
-            "means": d.vector(*[d.linear(offset(LONGEST), offset(SHORTEST)) for _ in range(3)]),
-        },
-        "float first = 0.0, second = 0.0, splits = 1.0;"
-        + PAIR
-        + INTERFACE
-        + "float eta; color white = reflected_white(s, cos_i, means, eta);"
-        "r[0] = reflects_white(s); r[1] = eta; r[2] = white[0]; r[3] = white[1]; r[4] = white[2];",
-        white_reflection,
-        100.0,
-        "a ratio of reflectances, each ill-conditioned where its ratio of indices is near 1",
-        covers=("reflects_white",),
-    ),
-    Function(
-        "meet_surface",
-        "incidence.h",
-        met,
-        "float b1 = 0.0, b2 = 0.0;" + PAIR + INTERFACE + "Incidence at; meet_surface(s, path, (normal)artist, 1, at);"
-        "r[0] = at.n[0]; r[1] = at.n[1]; r[2] = at.n[2]; r[3] = at.cos_i; r[4] = at.eta; r[5] = at.is_tir; r[6] = at.inside;"
-        "r[7] = at.enters; r[8] = at.exits; r[9] = at.disperses;",
-        meeting,
-        8.0,
-        FEW,
-        codes=("first", "second", "splits"),
-        covers=("splits_light", "relative_ior", "air"),
     ),
     Function(
         "make_optics",

@@ -9,6 +9,7 @@ import osl_interfaces
 import osl_lights
 import osl_lobes
 import osl_media
+import osl_paths
 import osl_surroundings
 
 from nested_dielectric.model.shader_source import OSL_FOLDER, without_comments
@@ -16,6 +17,7 @@ from nested_dielectric.model.shader_source import OSL_FOLDER, without_comments
 FUNCTIONS = (
     *osl_interfaces.FUNCTIONS,
     *osl_dispersion.FUNCTIONS,
+    *osl_paths.FUNCTIONS,
     *osl_lobes.FUNCTIONS,
     *osl_lights.FUNCTIONS,
     *osl_media.FUNCTIONS,
