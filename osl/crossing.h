@@ -1,10 +1,7 @@
-/* Walking along a ray through all surfaces of the scene, by trace(). */
+/* Walking along a ray through all surfaces of the scene, by trace(). A walk ends after PROBE_HITS, whatever it meets. */
 #pragma once
 
 #include "neighbour.h"
-
-/* Crossings one walk may count. A ray through a whole forest meets fewer. */
-#define PROBE_HITS 1024
 
 /* The next float after t, so that the surface just met is left behind and the very next one is not. */
 float next_after(float t)

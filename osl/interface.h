@@ -10,7 +10,7 @@ struct Interface {
   Medium to;        /* on the other side */
   int from_holders; /* objects of that medium's priority around the point */
   int to_holders;
-  int can_trace;       /* 0 where Cycles cannot trace rays from shaders */
+  int can_trace;       /* 0 where Cycles cannot trace rays from shaders, or they do not tell enough */
   int facts_are_wrong; /* a spot check finds so */
 };
 
@@ -41,13 +41,16 @@ void find_exterior(ExteriorFacts facts, int cut, int own_is_known, int needs_ext
   if (code == EXTERIOR_WINNER)
     s.valid = 0;
   int unknown = code < EXTERIOR_AIR || code > EXTERIOR_WINNER;
-  int checks = ((!unknown || facts.sole_priority >= 0.0) && spot_check()) ? 2 : 0;
+  int checked = spot_check();
+  int checks = (checked && (!unknown || facts.sole_priority >= 0.0)) ? 2 : 0;
+  if (checked && unknown)
+    s.facts_are_wrong = stands_beyond_slots();
   for (int i = unknown ? 0 : 1; i <= checks; i++) {
     Surroundings found = enclosing_medium(P, (i < 2) ? away : tilted(away), inner.priority, own_is_known,
                                           i ? NO_SOLE_PRIORITY : facts.sole_priority, facts.overlaps_itself, cut, curves,
                                           wavelength, facts.scene);
     if (i == 0) {
-      s.can_trace = found.can_trace;
+      s.can_trace = found.can_trace && found.complete;
       inner.priority = found.own_priority;
       outer = found.medium;
       holders = found.holders;

@@ -8,7 +8,7 @@
 #include "medium.h"
 
 #define NO_SLOT -1
-/* The object has got a second slot since the analysis: what is in it cannot be read. */
+/* The object has got a second slot since the analysis, or its dielectric stands beyond MATERIAL_SLOTS: it cannot be read. */
 #define UNREADABLE_SLOT -2
 
 /* Priority of the material's that fills the object. That is the nested dielectric of the face that was hit. A face with
@@ -34,8 +34,16 @@ float hit_material_priority(output int slot)
     if (getmessage("trace", priorities[slot], value) && value[3] > 0.0)
       return bounded(value[0], PRIORITY_LIMITS);
   }
-  slot = NO_SLOT;
+  slot = NO_SLOT + (UNREADABLE_SLOT - NO_SLOT) * (index >= MATERIAL_SLOTS);
   return AIR_PRIORITY;
+}
+
+/* Whether the shaded face has its material from a slot in which neighbours do not look. */
+int stands_beyond_slots()
+{
+  float index = 0.0;
+  getattribute("material_index", index);
+  return index >= MATERIAL_SLOTS;
 }
 
 /* Priority of the medium; AIR_PRIORITY if the object is foreign. The object's own value, where it has one, overrides the

@@ -7,7 +7,9 @@
 #define RANDOM_REFLECTION 4
 #define RANDOM_LIGHT_SAMPLE 5 /* and 6 */
 #define RANDOM_BSDF_SAMPLE 7  /* and 8 */
-#define RANDOM_LIGHT_CHOICE 9 /* and on */
+#define RANDOM_MASKING 9
+#define RANDOM_VISIBLE_NORMAL 10 /* and on, up to four a try */
+#define RANDOM_LIGHT_CHOICE 128  /* and on */
 
 /* A number in [0, 1). Paths meet a surface in different points, so a hash of the point is as good as drawn. */
 float random(int purpose)

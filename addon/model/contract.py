@@ -143,7 +143,10 @@ Dispersion."""
 CUT_SPLITS = len(DispersionModel)
 
 MATERIAL_SLOTS = 8
-"""Slots of an object in which neighbours look for its dielectric."""
+"""Slots of an object in which neighbours look for its dielectric; a surface that asks shows the alarm for a later one."""
+
+PROBE_HITS = 65536
+"""Surfaces that a ray of the shader's may count, over all runs for many priorities; beyond, the surface shows the alarm."""
 
 PROBE_HITS = 65536
 """Surfaces that a ray of the shader's may count, over all runs for many priorities; beyond, the surface shows the alarm."""
@@ -172,6 +175,12 @@ EMITTER_RADIANCE = 1e-6
 INDEX_MATCHED = 2e-5
 """Below this relative change of index light neither bends nor reflects measurably (F < 1e-10), and the half vector of a rough
 lobe is not defined.
+"""
+
+INDEX_NEARLY_MATCHED = 1e-2
+"""Below this relative change of index rough facets let light through as if none masked another (osl/closures.h).
+
+Cycles' multi-scatter GGX conserves energy from there on.
 """
 
 RATIO_MARGIN = 1e-4

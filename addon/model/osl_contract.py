@@ -32,6 +32,7 @@ NUMBERS = (
     "FACTS_OVERLAPS_ITSELF",
     "FACTS_PRIORITY_SHIFT",
     "INDEX_MATCHED",
+    "INDEX_NEARLY_MATCHED",
     "LEAST_TRANSMITTANCE",
     "MATERIAL_SLOTS",
     "MOST_STRETCH",
@@ -39,6 +40,7 @@ NUMBERS = (
     "NO_CUTOFF",
     "NO_PRIORITY",
     "NO_SOLE_PRIORITY",
+    "PROBE_HITS",
     "RATIO_MARGIN",
 )
 """Constants of the contract that the shader takes as they are."""

@@ -13,7 +13,7 @@ from functools import cached_property
 
 import bpy
 
-from ...model.contract import INDEX_MATCHED, DispersionModel
+from ...model.contract import INDEX_NEARLY_MATCHED, DispersionModel
 from ...model.dispersion import LINE_D, jf_ior
 from ...model.parameter import PRIORITY_PROPERTY, UNLIMITED_REFLECTIONS
 from ..compatibility import NATIVE_DISPERSION_VERSION
@@ -36,6 +36,12 @@ _SWITCHES = (
     "Caustic Internal Reflections",
 )
 """Switches that give reflection and refraction different weights where they are off."""
+
+_SMOOTH_CHANGE = 0.6 * INDEX_NEARLY_MATCHED
+"""Relative change of index up to which a rough surface shows smooth: facets of 45 degrees bend light by 0.34 degrees there."""
+
+_ROUGHENING = INDEX_NEARLY_MATCHED - _SMOOTH_CHANGE
+"""Change over which it gets as rough as it is."""
 
 
 class NativeBody(NativePart):
@@ -92,8 +98,10 @@ class NativeBody(NativePart):
         self.define("Film IOR", self.where(no_film, self.number("Thin Film IOR") / self.raw("Outer IOR"), 1.0))
         own = self.call(coefficients, Depth=self.number("Transmittance Depth"))["Coefficients"]
         self.define("Own Coefficients", self.scaled(own, 1.0 - self.raw("By Volume")))
-        # Where both indices are the same no half vector is defined.
-        differs = abs(self.raw("Ratio") - 1.0) > INDEX_MATCHED
+        # Glass gains and loses light between nearly equal indices (osl/closures.h), and a node cannot draw a normal.
+        change = abs(self.raw("Ratio") - 1.0)
+        differs = change.math("MULTIPLY_ADD", 1.0 / _ROUGHENING, -_SMOOTH_CHANGE / _ROUGHENING)
+        differs.socket.node.use_clamp = True
         rough = self.number("Roughness")
         self.define("Shown Roughness", self.where(self.surely(rough < 1e-9), rough * differs, 0.0))
 
