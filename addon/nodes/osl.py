@@ -71,12 +71,17 @@ def add_script(
     node.name = node.label = name
     node.mode = "INTERNAL"
     node.script = script.text()
-    node.bytecode = script.bytecode
-    node.bytecode_hash = hashlib.md5(script.bytecode.encode(), usedforsecurity=False).hexdigest()
+    set_bytecode(node, script.bytecode)
     for sockets, kinds in ((node.inputs, inputs), (node.outputs, outputs)):
         for socket, kind in kinds.items():
             _ensure_socket(sockets, kind, socket)
     return node
+
+
+def set_bytecode(node: bpy.types.ShaderNodeScript, bytecode: str) -> None:
+    """Put bytecode into a node with the hash that Cycles knows it by; none where it is empty, which Cycles shows magenta."""
+    node.bytecode = bytecode
+    node.bytecode_hash = hashlib.md5(bytecode.encode(), usedforsecurity=False).hexdigest() if bytecode else ""
 
 
 def _ensure_socket(sockets: bpy.types.NodeInputs, kind: str, name: str) -> None:

@@ -7,6 +7,7 @@ import bpy
 from ..analysis.validity import is_analysed
 from ..cutting import cut_scene
 from ..nodes.identity import NO_SCENE, known_number
+from ..nodes.script_mending import mend_scripts
 from ..scene.lights import update_lights
 from . import upkeep, windows
 from .update_handlers import analyse_after_frame_change
@@ -19,7 +20,10 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
     In a window updates have been followed.
     """
     numbered, analysed, cut = known_number(scene) != NO_SCENE, is_analysed(scene), cut_scene.is_cut(scene)
-    if not windows.in_main_thread() or not (numbered or analysed or cut):
+    if not windows.in_main_thread():
+        return
+    mend_scripts()
+    if not (numbered or analysed or cut):
         return
     with upkeep.writing(scene, looks=True) as done:
         if numbered:

@@ -16,6 +16,7 @@ from ..nodes.closures import arm_dispersion
 from ..nodes.compatibility import require_blender
 from ..nodes.group import ensure_group
 from ..nodes.material_version import DAMAGED, MATERIAL_VERSION, find_group, group_version
+from ..nodes.script_mending import mend_scripts
 from ..scene.lights import refresh_lights
 from ..scene.new_materials import show_colours_through
 from .group_exchange import exchange_group, move_curves, move_readers, owner_of
@@ -77,13 +78,14 @@ def mend_materials() -> tuple[str, ...]:
 
     :returns: what was changed, in sentences.
     """
+    mended = tuple(mend_scripts())
     if any(tree.library is None and is_wrong_here(tree) for tree in bpy.data.node_groups):
-        return update_materials()
+        return mended + update_materials()
     copies = [node for node in _outdated_nodes() if group_version(node.node_tree) == MATERIAL_VERSION]
     if copies:
-        return _update(copies)
+        return mended + _update(copies)
     _arm_groups()
-    return ()
+    return mended
 
 
 def outdated_materials() -> list[str]:
