@@ -22,6 +22,7 @@ from .analysis.surroundings import clear_analysis
 from .checking.check import check
 from .checking.finding import Finding
 from .checking.priority_suggestions import accept_priorities, suggest_priorities
+from .fixing.fix import Fixed, fix, fix_all
 from .model.parameter import ParameterError
 from .nodes.compatibility import UnsupportedError
 from .preparation.live import analyse
@@ -37,6 +38,7 @@ from .scene.preset_library import preset_names
 
 __all__ = [
     "Finding",
+    "Fixed",
     "ParameterError",
     "Preparation",
     "UnsupportedError",
@@ -46,6 +48,8 @@ __all__ = [
     "assign",
     "check",
     "clear_analysis",
+    "fix",
+    "fix_all",
     "get_priority",
     "light_carriers",
     "new_material",

@@ -19,6 +19,7 @@ from .ui.operators import (
     light_operators,
     preparation_operators,
     priority_operators,
+    problem_operators,
     suggestion_operators,
     update_operators,
 )
@@ -52,6 +53,7 @@ CLASSES = (
     *priority_operators.CLASSES,
     *suggestion_operators.CLASSES,
     *preparation_operators.CLASSES,
+    *problem_operators.CLASSES,
     *media_list_panel.CLASSES,
     *scene_panels.CLASSES,
     *medium_panels.CLASSES,

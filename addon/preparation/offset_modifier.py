@@ -75,6 +75,19 @@ def attribute_name(modifier: bpy.types.NodesModifier) -> str:
     return _name_input(modifier).value or OFFSET_ATTRIBUTE
 
 
+def multiply_offsets(obj: bpy.types.Object, linear: np.ndarray) -> None:
+    """Let what an object's modifier moves its points by be in a space that its own is mapped to.
+
+    :param linear: (3, 3), from one space to the other.
+    """
+    for modifier in filter(is_offset, obj.modifiers):
+        name = attribute_name(modifier)
+        attribute = obj.data.attributes.get(name)
+        if attribute is not None and _is_readable(attribute):
+            moved = _offsets_of(obj.data, name) @ linear.T
+            attribute.data.foreach_set("vector", moved.astype(np.float32).reshape(-1))
+
+
 def ensure_offset_group() -> bpy.types.NodeTree:
     """Return the file's own group of such modifiers, made if need be; one of an old version gets an input for the name."""
     tree = next((tree for tree in bpy.data.node_groups if tree.library is None and is_offset_group(tree)), None)

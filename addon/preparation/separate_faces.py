@@ -39,7 +39,7 @@ def separate_coincident_faces(scene: bpy.types.Scene) -> tuple[list[str], list[F
         offsets, problems = _next_offsets(scene, left, separated)
         if not offsets:
             break
-        users = _users_of_attributes()
+        users = users_of_attributes()
         for obj, offset in offsets.items():
             add_offset(obj, offset, users)
         analyse(scene)
@@ -91,7 +91,7 @@ def _next_offsets(
     return offsets, problems
 
 
-def _users_of_attributes() -> Counter[tuple[bpy.types.Mesh, str]]:
+def users_of_attributes() -> Counter[tuple[bpy.types.Mesh, str]]:
     """Return the numbers of modifiers that read an attribute of a mesh, by both."""
     return Counter(
         (obj.data, attribute_name(modifier))
@@ -116,7 +116,7 @@ def rejoin_separated_faces(scene: bpy.types.Scene) -> list[str]:
     moved = {(obj.data, attribute_name(modifier)) for obj, modifier in found if obj.mode == "OBJECT"}
     for obj, modifier in found:
         obj.modifiers.remove(modifier)
-    moved -= _users_of_attributes().keys()
+    moved -= users_of_attributes().keys()
     for mesh, name in moved:
         if mesh.is_editable and name in mesh.attributes:
             mesh.attributes.remove(mesh.attributes[name])

@@ -68,7 +68,8 @@ def _write(scene: bpy.types.Scene, path: str, value: Any) -> None:
 
 def label(scene: bpy.types.Scene, path: str) -> str:
     """Return what an artist knows a setting by."""
-    return LABELS.get(path) or scene.cycles.bl_rna.properties[path.rpartition(".")[2]].name
+    owner, _, name = path.rpartition(".")
+    return LABELS.get(path) or scene.path_resolve(owner).bl_rna.properties[name].name
 
 
 def change(scene: bpy.types.Scene, changed: Changed, path: str, value: Any) -> list[str]:

@@ -22,3 +22,11 @@ def has_media(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool
         cls.poll_message_set("The scene has no medium; assign a preset first")
         return False
     return True
+
+
+def in_object_mode(cls: type[bpy.types.Operator], context: bpy.types.Context) -> bool:
+    """Return whether objects may be selected and changed; if not, the operator says what to do."""
+    if context.mode != "OBJECT":
+        cls.poll_message_set("Leave this mode for Object Mode first")
+        return False
+    return True

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import bpy
+import numpy as np
+
+from ..analysis.mesh_modifiers import keeps_mesh
 
 
 def select_only(layer: bpy.types.ViewLayer, objects: Sequence[bpy.types.Object]) -> list[str]:
@@ -22,6 +25,30 @@ def select_only(layer: bpy.types.ViewLayer, objects: Sequence[bpy.types.Object])
             obj.select_set(True, view_layer=layer)
         layer.objects.active = chosen[0]
     return [f"{obj.name!r} {reason}" for obj in objects if (reason := unreachable(layer, obj))]
+
+
+def select_faces(context: bpy.types.Context, obj: bpy.types.Object, faces: Sequence[int]) -> bool:
+    """Make some polygons of an object's evaluated mesh the only selected ones, as Edit Mode will show them, by faces.
+
+    Return whether they are: modifiers must leave the mesh as it is, and it must be the file's own.
+    """
+    mesh = obj.data
+    if obj.type != "MESH" or not mesh.is_editable or not all(map(keeps_mesh, obj.modifiers)):
+        return False
+    chosen = np.zeros(len(mesh.polygons), dtype=bool)
+    chosen[[index for index in faces if index < len(chosen)]] = True
+    if not chosen.any():
+        return False
+    polygons = [mesh.polygons[index] for index in np.flatnonzero(chosen)]
+    loops = [index for polygon in polygons for index in polygon.loop_indices]
+    points, edges = np.zeros(len(mesh.vertices), dtype=bool), np.zeros(len(mesh.edges), dtype=bool)
+    points[[mesh.loops[index].vertex_index for index in loops]] = True
+    edges[[mesh.loops[index].edge_index for index in loops]] = True
+    for items, values in ((mesh.polygons, chosen), (mesh.edges, edges), (mesh.vertices, points)):
+        items.foreach_set("select", values)
+    context.tool_settings.mesh_select_mode = (False, False, True)
+    mesh.update_tag()
+    return True
 
 
 def unreachable(layer: bpy.types.ViewLayer, obj: bpy.types.Object) -> str:

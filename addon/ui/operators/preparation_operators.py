@@ -1,4 +1,4 @@
-"""Operators: preparing a scene, taking that back, and looking at what is wrong with it."""
+"""Operators: preparing a scene, and taking that back."""
 
 from __future__ import annotations
 
@@ -14,9 +14,7 @@ from ...nodes.render_with import BACKENDS, is_native, set_backend
 from ...preparation.live import bake_cut, update_cut
 from ...preparation.prepare_scene import prepare, put_back
 from ...preparation.report import last_report
-from ...scene.media import all_objects
 from ..polls import has_media, supported
-from ..selecting import frame_selected, instancers, select_only
 
 MOST_REPORTS = 20
 """Problems that are reported; the panel and Python have all."""
@@ -175,56 +173,6 @@ class KeepCut(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class ShowProblem(bpy.types.Operator):
-    """Show what has a problem."""
-
-    bl_idname = "nested_dielectric.show_problem"
-    bl_label = "Show Problem"
-    bl_description = "Select what has the problem and bring it into view"
-    bl_options = {"UNDO", "INTERNAL"}
-
-    name: bpy.props.StringProperty(name="Name", description="An object, or a material", options={"SKIP_SAVE"})
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Leave this mode for Object Mode first")
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        objects, note = _named(context.scene, self.name)
-        if not objects:
-            self.report({"WARNING"}, note)
-            return {"CANCELLED"}
-        missed = select_only(context.view_layer, objects)
-        for line in missed[:MOST_REPORTS]:
-            self.report({"WARNING"}, line)
-        if len(missed) == len(objects):
-            return {"CANCELLED"}
-        frame_selected(context)
-        if note:
-            self.report({"INFO"}, note)
-        return {"FINISHED"}
-
-
-def _named(scene: bpy.types.Scene, name: str) -> tuple[list[bpy.types.Object], str]:
-    """Return what to select for a name of a problem, and what to say of it."""
-    obj = scene.objects.get(name)
-    if obj is not None:
-        return [obj], ""
-    obj = next((each for each in all_objects(scene) if each.name == name), None)
-    if obj is not None:
-        return instancers(scene, obj), f"{name!r} is in a collection that is instanced; its instances are selected"
-    material = bpy.data.materials.get(name)
-    if material is not None:
-        users = [each for each in scene.objects if any(slot.material == material for slot in each.material_slots)]
-        return users, f"Objects with material {name!r}" if users else f"No object of the scene has material {name!r}"
-    if name == scene.name or name in scene.view_layers:
-        return [], f"{name!r} is no object; its problem concerns the whole scene"
-    return [], f"{name!r} is gone; prepare the scene again"
-
-
 class ClearAnalysis(bpy.types.Operator):
     """Clear the analysis of the scene."""
 
@@ -247,4 +195,4 @@ class ClearAnalysis(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (Prepare, PutBack, RenderWith, CutSurfaces, KeepCut, ShowProblem, ClearAnalysis)
+CLASSES = (Prepare, PutBack, RenderWith, CutSurfaces, KeepCut, ClearAnalysis)

@@ -12,7 +12,8 @@ from ...cutting.cut_scene import is_cut, last_cut
 from ...nodes.render_with import BACKENDS, get_backend
 from ..drawing import draw_text
 from ..media_list import listed_media
-from ..operators.preparation_operators import CutSurfaces, KeepCut, RenderWith, ShowProblem
+from ..operators.preparation_operators import CutSurfaces, KeepCut, RenderWith
+from ..operators.problem_operators import ShowProblem
 
 MOST_LINES = 20
 """Names whose reasons are listed."""
