@@ -12,10 +12,15 @@ from mathutils import Matrix
 from scenes import add, add_box, add_mesh, diffuse
 
 import nested_dielectric as nd
+from nested_dielectric.checking import check as module
 from nested_dielectric.checking.finding import Action, Finding, Fix
 from nested_dielectric.checking.kinds import KINDS
+from nested_dielectric.fixing import fix as fixing
+from nested_dielectric.fixing import kept
+from nested_dielectric.geometry import meshes
 from nested_dielectric.model.parameter import PRIORITY_PROPERTY
-from nested_dielectric.scene.shapes import mesh_digest
+from nested_dielectric.preparation import check_scene
+from nested_dielectric.scene.shapes import evaluated_triangles, mesh_digest
 
 UNIT = (-1, -1, -1), (1, 1, 1)
 
@@ -217,3 +222,43 @@ def state() -> dict[str, object]:
         values = () if node is None else [each.default_value for each in node.inputs if each.type in ("VALUE", "INT")]
         result[f"material {material.name}"] = ([each.name for each in material.node_tree.nodes], values)
     return result
+
+
+def mend(action, *names, **keywords) -> list[str]:
+    """Mend the scene as a finding would have it; return what was changed."""
+    return nd.fix(bpy.context.scene, found(action, *names, **keywords))
+
+
+def kinds() -> list[str]:
+    """What a check of the scene finds."""
+    return [finding.kind.key for finding in nd.check(bpy.context.scene)]
+
+
+def volume(obj):
+    """Of a closed mesh; nothing of an open one."""
+    bpy.context.view_layer.update()
+    vertices, triangles = evaluated_triangles(obj.evaluated_get(bpy.context.evaluated_depsgraph_get()))
+    joined = meshes.same_places(vertices)[triangles]
+    return None if meshes.open_edge_count(joined) else meshes.signed_volume(vertices.astype(float), triangles)
+
+
+def world_points(obj):
+    bpy.context.view_layer.update()
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    return np.array([tuple(evaluated.matrix_world @ vertex.co) for vertex in evaluated.data.vertices])
+
+
+def with_fixes(monkeypatch, *pairs):
+    """Let checks give fixes for kinds that are found: those of other checks may have none yet."""
+    by_kind = dict(pairs)
+
+    def check(scene):
+        result = []
+        for finding in module.check(scene):
+            action, safe = by_kind.get(finding.kind.key, (None, True))
+            value = Fix(action, (finding.name,), safe=safe) if action else None
+            result.append(Finding(finding.kind, finding.name, finding.text, finding.remedy, fix=value))
+        return result
+
+    for each in (fixing, kept, check_scene):
+        monkeypatch.setattr(each, "check", check)
