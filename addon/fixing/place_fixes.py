@@ -28,7 +28,7 @@ from ..scene.shapes import evaluated_triangles
 from .access import length_in, own_object, require_plain_points, shown_object
 
 TOWARDS = 0.5
-"""Cosine from which on a face looks towards what lies beside it."""
+"""Cosine from which on a face and the wall that it is pushed into look against each other."""
 
 BESIDE = 0.99
 """Cosine of the largest angle between a face and another that it lies on."""
@@ -42,20 +42,21 @@ def push_into_wall(scene: bpy.types.Scene, fix: Fix) -> list[str]:
     names = ", ".join(repr(wall.name) for wall in walls)
     vertices, triangles, normals = _in_world(scene, liquid)
     trees = [_tree(scene, wall) for wall in walls]
-    near = np.array([
-        any(_looks_at(tree, corners, Vector(normal), distance) for tree in trees)
-        for corners, normal in zip(vertices[triangles], normals)
-    ], dtype=bool)  # fmt: skip
-    near = _whole_sides(vertices, triangles, near)
+    near, thin = np.zeros((2, len(triangles)), dtype=bool)
+    for index, (corners, normal) in enumerate(zip(vertices[triangles], normals)):
+        depths = [_depth(tree, corners, Vector(normal), distance) for tree in trees]
+        near[index] = any(depth is not None for depth in depths)
+        thin[index] = any(
+            depth is not None and _comes_out(tree, corners.mean(axis=0), Vector(normal), depth, distance)
+            for tree, depth in zip(trees, depths)
+        )
     if not near.any():
         raise ParameterError(
             f"{liquid.name!r} has no faces within {distance:.3g} before {names}; make it as large as its vessel by hand"
         )
-    middles = vertices[triangles[near]].mean(axis=1)
-    if any(
-        _is_thinner(tree, middle, Vector(n), distance) for tree in trees for middle, n in zip(middles, normals[near])
-    ):
+    if thin.any():
         raise ParameterError(f"{liquid.name!r} would come out of {names}, whose wall is thinner than {distance:.3g}")
+    near = _whole_sides(vertices, triangles, near)
     heights = np.full(np.count_nonzero(near), distance)
     _offset(scene, liquid, least_squares_offsets(len(vertices), triangles[near], normals[near], heights))
     return [f"{liquid.name}: pushed {distance:.3g} into {names} (modifier {_modifier_name(liquid)!r})"]
@@ -135,22 +136,27 @@ def _tree(scene: bpy.types.Scene, obj: bpy.types.Object) -> BVHTree:
     return BVHTree.FromPolygons(vertices.tolist(), triangles.tolist(), all_triangles=True)
 
 
-def _looks_at(tree: BVHTree, corners: np.ndarray, normal: Vector, reach: float) -> bool:
-    """Return whether a surface lies before a triangle, within a distance and where the triangle looks to."""
+def _depth(tree: BVHTree, corners: np.ndarray, normal: Vector, reach: float) -> float | None:
+    """Return how deep a triangle lies in a wall that looks against it, negative before it; None where none is in reach."""
     middle = corners.mean(axis=0)
-    for point in (middle, *(0.5 * (corners + np.roll(corners, 1, axis=0)))):
-        place, _, _, distance = tree.find_nearest(Vector(point), reach)
-        if place is not None and (place - Vector(point)).dot(normal) >= TOWARDS * distance:
-            return True
-    return False
+    for point in map(Vector, (middle, *(0.5 * (corners + np.roll(corners, 1, axis=0))))):
+        place, against, _, distance = tree.find_nearest(point, reach)
+        if place is None or against.dot(normal) > -TOWARDS:
+            continue
+        ahead = (place - point).dot(normal)
+        if abs(ahead) >= TOWARDS * distance:
+            return -ahead
+    return None
 
 
-def _is_thinner(tree: BVHTree, point: np.ndarray, normal: Vector, reach: float) -> bool:
-    """Return whether a ray of some length from a point before a wall comes out of it again."""
-    start, left, met = Vector(point), reach, 0
+def _comes_out(tree: BVHTree, point: np.ndarray, normal: Vector, depth: float, way: float) -> bool:
+    """Return whether a point that lies so deep in a wall comes out of it on a way along a normal."""
+    rounding = 4.0 * FLOAT_ROUNDING * float(np.abs(point).max()) + 1e-3 * way
+    before = max(depth, 0.0) + rounding
+    start, left, met = Vector(point) - before * normal, way + before, 0
     while left > 0.0 and (hit := tree.ray_cast(start, normal, left))[0] is not None:
         met += 1
-        step = hit[3] + 1e-3 * reach + FLOAT_ROUNDING * 4.0 * max(map(abs, start))
+        step = hit[3] + rounding
         start, left = start + step * normal, left - step
     return met > 1
 

@@ -38,6 +38,18 @@ def test_a_liquid_is_pushed_into_its_wall_and_its_surface_stays(scale):
     assert world_points(water) == pytest.approx(before)
 
 
+def test_a_liquid_that_reaches_a_little_into_its_wall_is_pushed_on_and_a_thin_layer_keeps_its_surface():
+    _, water = vessel(-0.001)
+    water.data.vertices.foreach_set("co", (world_points(water) * (1, 1, 0.01) + (0, 0, -0.991)).astype("f").ravel())
+    before = world_points(water)
+    mend(Action.PUSH_INTO_WALL, "Water", "Cup", value=0.05, kind="thin-overlap")
+    after = world_points(water)
+    below = before[:, 2] < -0.996
+    assert after[~below, 2] == pytest.approx(before[~below, 2], abs=1e-6)
+    assert after[below, 2] == pytest.approx(before[below, 2] - 0.05, abs=1e-5)
+    assert np.linalg.norm(after[:, :2], axis=1).min() > 1.05
+
+
 def test_a_liquid_is_not_pushed_through_its_wall_nor_where_there_is_none():
     _, water = vessel(0.02)
     with pytest.raises(nd.ParameterError, match="would come out of 'Cup', whose wall is thinner than"):

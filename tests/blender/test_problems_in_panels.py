@@ -81,14 +81,14 @@ def test_problems_stay_to_be_read_each_with_a_button_and_its_remedy(draw, panel)
     bpy.ops.nested_dielectric.prepare()
     drawn = draw(panel)
     labels, _, buttons = texts(drawn)
-    assert "5 Problems at the Last Check" in labels and "Ready" not in labels
+    assert "5 Problems As of the last check" in labels and "Ready" not in labels
     assert {f"Sheet {index}" for index in range(5)} <= buttons.keys()
     assert labels.count("Is not closed") == 5 and labels.count("recalculate its normals") == 5
     closed = [keywords["default_closed"] for name, _, keywords in drawn if name == "panel"]
     assert closed == [False] + [True] * 6  # the last are what has been changed, and what renders
     # Whatever has happened since.
     bpy.data.objects.remove(bpy.data.objects["Sheet 0"])
-    assert "5 Problems at the Last Check" in texts(draw(panel))[0]
+    assert "5 Problems As of the last check" in texts(draw(panel))[0]
 
 
 def test_the_report_of_the_operator_ends_with_whether_the_scene_is_ready(capfd):

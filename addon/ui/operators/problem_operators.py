@@ -13,7 +13,7 @@ from ...model.parameter import ParameterError
 from ...preparation.check_scene import check_and_keep
 from ...preparation.report import last_report
 from ...scene.media import all_objects
-from ..polls import in_object_mode, supported
+from ..polls import in_object_mode
 from ..selecting import frame_selected, instancers, select_faces, select_only
 from .preparation_operators import MOST_REPORTS
 
@@ -37,10 +37,6 @@ class Check(bpy.types.Operator):
     bl_label = "Check Scene"
     bl_description = "Look for problems with the media of this scene, and list them here. Nothing that renders changes"
     bl_options = {"REGISTER", "UNDO"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        return supported(cls)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         problems = [each for each in check_and_keep(context.scene) if each.severity != Severity.NOTE]

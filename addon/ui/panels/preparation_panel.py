@@ -49,21 +49,28 @@ def draw_readiness(layout: bpy.types.UILayout, context: bpy.types.Context, repor
         draw_text(rows, context, "No problems at the last check; Prepare Scene makes it ready", "CHECKMARK")
         return
     rows.label(text="Ready to Render", icon_value=ready_icon())
-    old = rows.row()
+    draw_age(rows, "As of the last Prepare")
+
+
+def draw_age(layout: bpy.types.UILayout, text: str) -> None:
+    """Draw when what stands above was so, in grey."""
+    old = layout.row()
     old.active = False
-    old.label(text="As of the last Prepare", icon="BLANK1")
+    old.label(text=text, icon="BLANK1")
 
 
 def draw_problems(layout: bpy.types.UILayout, context: bpy.types.Context, report: Report) -> None:
     """Draw the problems that were left or found, and the button that mends what is safe to mend."""
     problems = [(index, each) for index, each in enumerate(report.problems) if each.severity != Severity.NOTE]
     count = len(problems) + report.more_problems
-    title = layout.row()
+    rows = layout.column(align=True)
+    title = rows.row()
     words = title.row()
     words.alert = True
-    words.label(text=f"{count} Problem{'s' * (count != 1)} at the Last Check", icon="ERROR")
+    words.label(text=f"{count} Problem{'s' * (count != 1)}", icon="ERROR")
     if any(problem.fix is not None and problem.fix.safe for _, problem in problems):
         title.operator(FixAll.bl_idname, icon="TOOL_SETTINGS")
+    draw_age(rows, "As of the last check")
     for place, (index, problem) in enumerate(problems):
         draw_finding(layout, context, index, problem, place < OPEN_PROBLEMS)
     if report.more_problems:
