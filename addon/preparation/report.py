@@ -66,7 +66,7 @@ def _findings_value(media: int, problems: Sequence[Finding]) -> dict[str, Any]:
     notes = sum(finding.severity == Severity.NOTE for finding in left)
     return {
         "media": media,
-        "problems": [to_json(_with_few_faces(finding)) for finding in shown],
+        "problems": [_in_short(finding) for finding in shown],
         "more_problems": len(left) - notes,
         "more_notes": notes,
     }
@@ -100,9 +100,11 @@ KEPT_FACES = 16
 """The most faces of a finding that are kept."""
 
 
-def _with_few_faces(finding: Finding) -> Finding:
-    """Return a finding that names the first of its faces."""
-    return replace(finding, place=replace(finding.place, faces=finding.place.faces[:KEPT_FACES]))
+def _in_short(finding: Finding) -> dict[str, Any]:
+    """Return a finding in JSON's types with the first of its faces, without what its kind says."""
+    place = replace(finding.place, faces=finding.place.faces[:KEPT_FACES])
+    value = to_json(replace(finding, place=place))
+    return {key: each for key, each in value.items() if key not in ("severity", "shows")}
 
 
 def _first(items: Sequence) -> list:

@@ -1,17 +1,21 @@
 """The panel says whether a scene is ready, and what is wrong with it."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import bpy
 import pytest
+from faults import fault_of
 from panels import PANELS, activate, add_media, exclude
 from scenes import add_plane, mostly_again
 from ui import Layout, labels_and_operators, texts
 
 import nested_dielectric as nd
 from nested_dielectric.analysis.validity import is_analysed
+from nested_dielectric.checking.finding import Action, Finding
+from nested_dielectric.checking.kinds import KINDS
 from nested_dielectric.preparation.prepare_scene import put_back
-from nested_dielectric.preparation.report import last_report
+from nested_dielectric.preparation.report import keep_findings, last_report
 from nested_dielectric.ui import media_list
 from nested_dielectric.ui.operators import preparation_operators
 from nested_dielectric.ui.panels import notices, scene_panels
@@ -89,6 +93,37 @@ def test_problems_stay_to_be_read_each_with_a_button_and_its_remedy(draw, panel)
     # Whatever has happened since.
     bpy.data.objects.remove(bpy.data.objects["Sheet 0"])
     assert "5 Problems As of the last check" in texts(draw(panel))[0]
+
+
+def test_each_problem_has_a_button_that_mends_it_and_notes_stand_apart(draw, scene):
+    add_media(Water=30)
+    wrong = fault_of(Action.CLOSE_HOLES)
+    slow = Finding(KINDS["self-overlap"], "Ice Cube", "overlaps itself", "make it one surface")
+    note = Finding(KINDS["light-inside"], "Lamp", "shines from inside", "nothing to do")
+    keep_findings(scene, 1, [wrong, replace(wrong, fix=replace(wrong.fix, safe=False)), slow, note])
+    drawn = draw(scene_panels.SidebarPanel)
+    labels, _, buttons = texts(drawn)
+    assert "3 Problems As of the last check" in labels and "1 Note" in labels and "Ready" not in labels
+    assert "Shows: light that leaves through" in labels and "Shows: dark or clear patches" in labels
+    icons = [keywords["icon"] for name, _, keywords in drawn if name == "label" and keywords.get("text") == ""]
+    assert icons == ["ERROR", "ERROR", "TIME", "INFO"]
+    _, operators = labels_and_operators(drawn)
+    assert operators.count("nested_dielectric.fix") == 2 and operators.count("nested_dielectric.fix_all") == 1
+    assert {"Box", "Ice Cube", "Lamp"} <= buttons.keys()
+    closed = {arguments[0]: keywords["default_closed"] for name, arguments, keywords in drawn if name == "panel"}
+    assert closed["nested_dielectric_problem_0"] is False and closed["nested_dielectric_notes"] is True
+    keep_findings(scene, 1, [replace(wrong, fix=replace(wrong.fix, safe=False)), note])
+    assert "nested_dielectric.fix_all" not in labels_and_operators(draw(scene_panels.SidebarPanel))[1]
+
+
+def test_a_scene_that_was_only_checked_is_not_called_ready(draw, scene):
+    add_media(Water=30)
+    scene.render.engine = "CYCLES"
+    scene.cycles.shading_system = True
+    bpy.ops.nested_dielectric.check()
+    labels, buttons = labels_and_operators(draw(scene_panels.SidebarPanel, 800))
+    assert "No problems at the last check; Prepare Scene makes it ready" in labels and "Ready to Render" not in labels
+    assert "nested_dielectric.put_back" not in buttons and not is_analysed(scene)
 
 
 def test_the_report_of_the_operator_ends_with_whether_the_scene_is_ready(capfd):
