@@ -116,11 +116,6 @@ def last_contacts(scene: bpy.types.Scene) -> tuple[list[tuple[bpy.types.Object, 
     return [(instance.obj, instance.body) for instance in snapshot.bodies], snapshot.contacts
 
 
-def last_snapshot(scene: bpy.types.Scene) -> SceneSnapshot | None:
-    """Return the scene as an analysis in this session saw it last; None if it has changed since, or there was none."""
-    return analysis_of(scene).snapshot
-
-
 def last_found(scene: bpy.types.Scene) -> Found | None:
     """Return what the last analysis of a scene found in this session, or None of a scene that is not analysed."""
     return analysis_of(scene).found if is_analysed(scene) else None

@@ -9,13 +9,17 @@ import bpy
 from ..analysis import solid_cache
 from ..nodes.lookups import caching_nodes
 from .absorption_checks import strength_findings, tint_findings, volume_findings
+from .coincident_checks import coincident_findings
 from .finding import Finding, severe
+from .foreign_checks import foreign_findings, view_findings
+from .gap_checks import gap_findings
 from .inspection import Inspection, inspect
 from .light_checks import dispersion_findings, light_findings
 from .material_checks import mask_findings, node_findings, value_findings
 from .mesh_checks import mesh_findings
 from .object_checks import kind_findings, object_findings
-from .overlap_checks import foreign_contact_findings, overlap_findings
+from .overlap_checks import overlap_findings
+from .precision_checks import precision_findings
 from .ray_checks import ray_findings
 from .scene_checks import scene_findings
 from .setting_checks import backend_findings, setting_findings
@@ -29,9 +33,12 @@ CHECKS: tuple[Callable[[Inspection], Iterable[Finding]], ...] = (
     object_findings,
     value_findings,
     mesh_findings,
+    coincident_findings,
     overlap_findings,
+    gap_findings,
+    precision_findings,
     mask_findings,
-    foreign_contact_findings,
+    foreign_findings,
     dispersion_findings,
     light_findings,
     tint_findings,
@@ -40,6 +47,7 @@ CHECKS: tuple[Callable[[Inspection], Iterable[Finding]], ...] = (
     ray_findings,
     backend_findings,
     scene_findings,
+    view_findings,
 )
 """All checks, in the order of what they find."""
 

@@ -84,14 +84,6 @@ class Containment:
         near = points[((points >= low) & (points <= high)).all(axis=1)]
         return any(self._holds(shape, Vector(point)) for point in near)
 
-    def overlap(self, one: Shape, other: Shape) -> bool:
-        """Return whether two shapes cross, or one holds the other."""
-        if self._tree(one).overlap(self._tree(other)):
-            return True
-        return self.any(one, other.vertices[other.triangles[:1, 0]]) or self.any(
-            other, one.vertices[one.triangles[:1, 0]]
-        )
-
     def _tree(self, shape: Shape) -> BVHTree:
         """Return the tree of a shape's triangles."""
         key = id(shape)

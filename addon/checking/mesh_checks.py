@@ -8,15 +8,24 @@ import bpy
 import numpy as np
 
 from ..analysis.stability import is_relative
-from ..model.parameters import NEIGHBOUR_PARAMETERS
-from ..nodes.lookups import cached_by_nodes
-from ..nodes.places import socket_value
-from ..scene.materials import dielectric_node, medium_material
+from ..geometry import meshes
+from ..geometry.mesh_faults import mesh_faults
 from ..scene.media import SOLID_TYPES, get_priority
 from .evaluated_shapes import Shape
-from .finding import Finding
-from .inspection import Inspection
-from .kinds import INWARD_NORMALS, METABALL_FAMILY, NO_FACES, NOT_FINITE, OPEN_MESH, SEVERAL_MEDIA
+from .finding import NOWHERE, Action, Finding, Fix, Place
+from .inspection import Inspection, listed_faces
+from .kinds import (
+    INWARD_NORMALS,
+    METABALL_FAMILY,
+    MIXED_NORMALS,
+    NO_FACES,
+    NOT_FINITE,
+    OPEN_MESH,
+    SELF_OVERLAP,
+    SEVERAL_MEDIA,
+)
+from .own_mesh import CONVERT, can_change
+from .signatures import medium_signature, neighbour_values
 
 _EMPTY = {
     "MESH": "give it a closed mesh, or another material",
@@ -25,8 +34,6 @@ _EMPTY = {
     "SURFACE": "close it (Edit Mode > Surface > Cyclic), or give it another material",
     "META": "let it reach its threshold (a larger Radius or Stiffness), or give it another material",
 }
-
-CONVERT = "turn it into a mesh (Object > Convert > Mesh)"
 
 _OPEN = {
     "MESH": "close it (Mesh > Clean Up > Fill Holes, Merge > By Distance, or a Solidify modifier) and recalculate its "
@@ -43,14 +50,23 @@ _INVERTED = {
     "SURFACE": f"turn it around (Edit Mode > Segments > Switch Direction), or {CONVERT} and recalculate its normals",
     "META": "make its elements positive",
 }
+_TURN = f"{CONVERT} and recalculate its normals"
+
+_UNITE = "make its parts one (Edit Mode > Face > Intersect (Boolean) > Self Union, or a Remesh modifier)"
+
+_JOIN = {"MESH": f"nothing to do but for speed; else {_UNITE}"}
 """Remedies by the object's type, as in the two tables above."""
 
 
 def mesh_findings(inspection: Inspection) -> Iterator[Finding]:
     """Yield what is wrong with the meshes of media."""
     for shape in inspection.shapes:
-        yield from _shape_findings(shape, inspection.shapes)
-        yield from _mixture_findings(shape)
+        several = _mixture_findings(shape)
+        # Media that are to be separated overlap for that reason.
+        yield from (
+            each for each in _shape_findings(shape, inspection.shapes) if not several or each.kind != SELF_OVERLAP
+        )
+        yield from several
 
 
 def _shape_findings(shape: Shape, shapes: list[Shape]) -> list[Finding]:
@@ -70,14 +86,80 @@ def _shape_findings(shape: Shape, shapes: list[Shape]) -> list[Finding]:
                 "remove those vertices, or the modifier that makes them",
             )
         ]
-    edges = shape.mesh.open_edges
-    if edges:
-        text = f"is not closed or its faces are turned against each other ({edges} edges)"
-        return [Finding(OPEN_MESH, name, text, _OPEN.get(obj.type, CONVERT))]
+    if shape.mesh.open_edges:
+        return [_open_finding(shape)]
     if shape.mesh.is_inverted:
-        remedy = _INVERTED.get(obj.type, f"{CONVERT} and recalculate its normals")
-        return [Finding(INWARD_NORMALS, name, "has its normals pointing inwards", remedy)]
-    return []
+        text, faces = "has its normals pointing inwards", np.arange(len(shape.triangles))
+        return [_inward_finding(shape, text, faces)]
+    found = shape.mesh.solid.overlapping_triangle
+    return [] if found is None else [_overlap_finding(shape, found)]
+
+
+def _open_finding(shape: Shape) -> Finding:
+    """Return where a mesh is not closed, or which of its faces are turned against others."""
+    obj = shape.obj
+    corners = meshes.same_places(shape.mesh.vertices)[shape.mesh.triangles]
+    faults = mesh_faults(shape.mesh.vertices, corners)
+    changeable = can_change(obj)
+    if len(faults.turned):
+        text = f"has faces turned against each other ({len(np.unique(shape.mesh.faces[faults.turned]))} of them)"
+        fix = Fix(Action.RECALCULATE_NORMALS, (obj.name,)) if changeable else None
+        remedy = _INVERTED.get(obj.type, _TURN)
+        return Finding(MIXED_NORMALS, obj.name, text, remedy, place=_place(shape, faults.turned), fix=fix)
+    text = f"is not closed ({shape.mesh.open_edges} edges)"
+    if len(faults.crowded):
+        text = f"is not closed where several faces share an edge ({shape.mesh.open_edges} edges are open or shared)"
+    fix = None
+    if len(faults.crowded) == 0 and changeable:
+        fix = Fix(Action.CLOSE_HOLES, (obj.name,))
+    elif obj.type == "CURVE" and _takes_caps(obj):
+        fix = Fix(Action.FILL_CAPS, (obj.name,))
+    place = _place(shape, faults.crowded if len(faults.crowded) else faults.holes)
+    return Finding(OPEN_MESH, obj.name, text, _OPEN.get(obj.type, CONVERT), place=place, fix=fix)
+
+
+def _takes_caps(obj: bpy.types.Object) -> bool:
+    """Return whether caps close a curve: it is a tube that is open at its ends."""
+    curve = obj.data
+    return (
+        obj.is_editable
+        and curve.is_editable
+        and not obj.modifiers
+        and not curve.use_fill_caps
+        and curve.dimensions == "3D"
+        and (curve.bevel_depth > 0.0 or curve.bevel_mode == "OBJECT")
+        and curve.fill_mode == "FULL"
+    )
+
+
+def _inward_finding(shape: Shape, text: str, triangles: np.ndarray) -> Finding:
+    """Return that some triangles of a closed mesh look inwards."""
+    obj = shape.obj
+    fix = Fix(Action.RECALCULATE_NORMALS, (obj.name,)) if can_change(obj) else None
+    remedy = _INVERTED.get(obj.type, _TURN)
+    return Finding(INWARD_NORMALS, obj.name, text, remedy, place=_place(shape, triangles), fix=fix)
+
+
+def _overlap_finding(shape: Shape, triangle: int) -> Finding:
+    """Return that a mesh overlaps itself, or that parts of it look inwards.
+
+    :param triangle: where it does.
+    """
+    inward = shape.mesh.solid.inward_triangles()
+    if len(inward):
+        return _inward_finding(shape, "has parts with their normals pointing inwards", inward)
+    text = "overlaps itself, so rays ask there what lies around them, which takes longer"
+    remedy = _JOIN.get(shape.obj.type, f"nothing to do but for speed; else {CONVERT} and {_UNITE}")
+    place = _place(shape, np.array([triangle]))
+    return Finding(SELF_OVERLAP, shape.obj.name, text, remedy, place=place)
+
+
+def _place(shape: Shape, triangles: np.ndarray) -> Place:
+    """Return the place of some triangles of a shape."""
+    if len(triangles) == 0:
+        return NOWHERE
+    point = shape.vertices[shape.mesh.triangles[triangles[0]]].mean(axis=0)
+    return Place(listed_faces(shape.mesh.faces[triangles]), tuple(point.tolist()))
 
 
 def _family_findings(obj: bpy.types.Object, family: bpy.types.Object) -> list[Finding]:
@@ -99,7 +181,7 @@ def _family_findings(obj: bpy.types.Object, family: bpy.types.Object) -> list[Fi
 
 def _mixture_findings(shape: Shape) -> list[Finding]:
     """Return the problem of an object with several media: which of them it is inside cannot be told by faces."""
-    media_of = {_neighbour_values(material): material.name for material in shape.materials}
+    media_of = {neighbour_values(material): material.name for material in shape.materials}
     if len(media_of) < 2:
         return []
     return [
@@ -112,15 +194,3 @@ def _mixture_findings(shape: Shape) -> list[Finding]:
             else f"{CONVERT} and separate them (Edit Mode > Mesh > Separate > By Material)",
         )
     ]
-
-
-@cached_by_nodes
-def _neighbour_values(material: bpy.types.Material) -> tuple:
-    """Return what neighbours read of a material, the values of its sockets."""
-    node = dielectric_node(material)
-    return tuple(socket_value(node.inputs[name]) for name in NEIGHBOUR_PARAMETERS)
-
-
-def medium_signature(obj: bpy.types.Object) -> tuple:
-    """Return what neighbours read of an object's medium, but its priority: the same for objects of one medium."""
-    return _neighbour_values(medium_material(obj))[1:]

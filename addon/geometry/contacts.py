@@ -13,7 +13,7 @@ import numpy as np
 
 from ..model.contract import Exterior
 from .pairs import PairRelation, candidate_pairs, relate_pairs
-from .solids import Body, PlacedSolid
+from .solids import Body, PlacedSolid, Solid
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +46,11 @@ class PairCache:
     pairs: dict[tuple, tuple[PairRelation, PairRelation]] = field(default_factory=dict)
 
 
+def place_key(body: Body) -> tuple[Solid, bytes]:
+    """Return the key of a body's place in a cache."""
+    return body.solid, np.ascontiguousarray(body.matrix, dtype=np.float64).tobytes()
+
+
 def analyse(bodies: Sequence[Body], cache: PairCache | None = None) -> list[Contact]:
     """Find what lies around every body.
 
@@ -58,7 +63,7 @@ def analyse(bodies: Sequence[Body], cache: PairCache | None = None) -> list[Cont
             Contact(Exterior.UNKNOWN, overlaps_itself=body.solid.closed and body.solid.overlaps_itself)
             for body in bodies
         ]
-    keys = [(body.solid, np.ascontiguousarray(body.matrix, dtype=np.float64).tobytes()) for body in bodies]
+    keys = [place_key(body) for body in bodies]
     places = {
         key: cache.places.get(key) or PlacedSolid(body.solid, np.array(body.matrix, dtype=np.float64))
         for key, body in zip(keys, bodies)

@@ -1,4 +1,4 @@
-"""Whether the surface of one mesh overlaps itself."""
+"""Where the surface of one mesh overlaps itself."""
 
 from __future__ import annotations
 
@@ -16,18 +16,29 @@ from .winding import ray_crossings, winding_numbers
 LEAST_HEIGHT = 1e-6
 
 
-def overlaps_itself(surface: Surfaces) -> bool:
-    """Return whether the surface of one mesh crosses itself, or some island does not separate the inside from the outside.
+def overlapping_triangle(surface: Surfaces) -> int | None:
+    """Return a triangle where the surface of one mesh overlaps itself, None where it does nowhere.
 
-    Islands that are star-shaped about their centre cannot cross themselves; the others are intersected.
+    It crosses itself there, or the triangle is of an island that does not separate the inside from the outside. Islands that
+    are star-shaped about their centre cannot cross themselves; the others are intersected.
     """
     faces, starts = surface.by_island
     for island in np.flatnonzero(~_are_star_shaped(surface)):
-        if _crosses_itself(surface, faces[starts[island] : starts[island + 1]]):
-            return True
+        found = _crossing_triangle(surface, faces[starts[island] : starts[island + 1]])
+        if found is not None:
+            return found
     if len(starts) == 2:
-        return False
-    return _islands_touch(surface) or bool(np.any(_outer_winding_numbers(surface) != 0))
+        return None
+    found = _triangle_that_touches_an_island(surface)
+    if found is not None:
+        return found
+    wrong = np.flatnonzero(_outer_winding_numbers(surface) != 0)
+    return int(faces[starts[wrong[0]]]) if len(wrong) else None
+
+
+def inward_islands(surface: Surfaces) -> np.ndarray:
+    """Return the islands of one mesh whose normals point into them, and that are no cavities of others."""
+    return np.flatnonzero(_outer_winding_numbers(surface) < 0)
 
 
 def _are_star_shaped(surface: Surfaces) -> np.ndarray:
@@ -51,8 +62,8 @@ def _are_star_shaped(surface: Surfaces) -> np.ndarray:
     return star & (ray_crossings(centre.T, surface, islands[faces], faces) == 1)
 
 
-def _islands_touch(surface: Surfaces) -> bool:
-    """Return whether the surfaces of two islands cross or touch."""
+def _triangle_that_touches_an_island(surface: Surfaces) -> int | None:
+    """Return a triangle that crosses or touches another island than its own; None where there is none."""
     size = length(np.subtract(*surface.island_boxes))
     tolerance = TOUCH_TOLERANCE * size + FLOAT_ROUNDING * float(np.abs(surface.boxes).max())
     faces, trees = surface.by_island[0], surface.island_trees
@@ -65,9 +76,10 @@ def _islands_touch(surface: Surfaces) -> bool:
             least = np.minimum(*(tolerance[surface.islands[each]] for each in some))
             a, b = (with_normals(surface, each) for each in some)
             number = np.arange(len(least))
-            if len(without_separating_axis(a, number, b, number, least)[0]):
-                return True
-    return False
+            touching = without_separating_axis(a, number, b, number, least)[0]
+            if len(touching):
+                return int(some[0][touching[0]])
+    return None
 
 
 def near_islands(surface: Surfaces, tolerance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -106,8 +118,8 @@ def _outer_winding_numbers(surface: Surfaces) -> np.ndarray:
     return winding_numbers(surface.centroids(faces), surface, left_out=faces) - (up[faces] < 0.0)
 
 
-def _crosses_itself(surface: Surfaces, faces: np.ndarray) -> bool:
-    """Return whether some triangles of a mesh cross, beyond the vertices and edges that they share."""
+def _crossing_triangle(surface: Surfaces, faces: np.ndarray) -> int | None:
+    """Return a triangle of a mesh that crosses another, beyond vertices and edges that they share; None if there is none."""
     low, high = (end[:, 0] for end in surface.boxes)
     centre = (low + high) / 2.0
     size = float((high - low).max())
@@ -117,9 +129,10 @@ def _crosses_itself(surface: Surfaces, faces: np.ndarray) -> bool:
     tree = BVHTree.FromPolygons(vertices, corners.reshape(3, -1).T.tolist(), all_triangles=True, epsilon=1e-12)
     pairs = np.array(tree.overlap(tree), dtype=np.intp).reshape(-1, 2)
     if len(pairs) == 0:
-        return False
+        return None
     first, second = surface.points(faces[pairs[:, 0]]), surface.points(faces[pairs[:, 1]])
-    return bool(np.any(_pierces(first, second) | _pierces(second, first)))
+    found = np.flatnonzero(_pierces(first, second) | _pierces(second, first))
+    return int(faces[pairs[found[0], 0]]) if len(found) else None
 
 
 def _pierces(first: np.ndarray, second: np.ndarray) -> np.ndarray:

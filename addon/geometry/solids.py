@@ -11,6 +11,7 @@ import numpy as np
 from . import meshes, self_overlap
 from .hierarchy import morton_order
 from .numbering import group_by_number
+from .samples import Samples, spread_samples
 from .surfaces import FLOAT_ROUNDING, TOUCH_TOLERANCE, Surfaces, normals_of
 from .vectors import length
 
@@ -44,6 +45,11 @@ class Solid:
         return 4.0 * meshes.signed_volume(self.vertices, self.triangles) / max(float(surface), 1e-30)
 
     @cached_property
+    def samples(self) -> Samples:
+        """Return points spread evenly over it."""
+        return spread_samples(self.vertices, self.triangles)
+
+    @cached_property
     def order(self) -> np.ndarray:
         """Sort the triangles by their first corners, neighbours in space one after the other, (m,)."""
         return morton_order(self.vertices.T[:, self.triangles[:, 0]])
@@ -68,12 +74,27 @@ class Solid:
         return group_by_number(self.islands)
 
     @cached_property
+    def overlapping_triangle(self) -> int | None:
+        """Return a triangle where its surface overlaps itself, None where it does nowhere."""
+        found = self_overlap.overlapping_triangle(self._aligned)
+        return None if found is None else int(self.order[found])
+
+    @property
     def overlaps_itself(self) -> bool:
         """Return whether its surface crosses itself, or some island does not separate the inside from the outside."""
+        return self.overlapping_triangle is not None
+
+    def inward_triangles(self) -> np.ndarray:
+        """Return the triangles of islands whose normals point into them, and that are no cavities of others."""
+        if len(self.by_island[1]) == 2:
+            return self.order[:0]
+        return np.sort(self.order[np.isin(self.islands, self_overlap.inward_islands(self._aligned))])
+
+    @property
+    def _aligned(self) -> PlacedSolid:
+        """Return it so turned that the boxes of many islands are apart."""
         place = PlacedSolid(self, np.eye(4))
-        if len(self.by_island[1]) > 2:
-            place = PlacedSolid(self, self_overlap.aligning_frame(place))
-        return self_overlap.overlaps_itself(place)
+        return PlacedSolid(self, self_overlap.aligning_frame(place)) if len(self.by_island[1]) > 2 else place
 
 
 @dataclass(frozen=True)

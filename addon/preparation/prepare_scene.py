@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..analysis.findings import Found
-from ..analysis.surroundings import clear_analysis, last_found, last_snapshot
+from ..analysis.surroundings import clear_analysis, last_found
 from ..analysis.validity import is_analysed
 from ..checking.check import check, find
 from ..checking.finding import Finding, severe
@@ -149,7 +149,7 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
             text = f"keeps its old spectral table, because {error}"
             findings.append(Finding(SPECTRAL_TABLE, material.name, text, "choose another"))
     found = analyse(scene)
-    separated, coincident = separate_coincident_faces(scene)
+    separated = separate_coincident_faces(scene)
     if separated:
         found = last_found(scene)
     changes += ensure_osl(scene, changed)
@@ -157,7 +157,7 @@ def _prepare(scene: bpy.types.Scene, changed: Changed, stays: list[str]) -> Prep
     changes += ensure_random_time(scene, changed) if by_osl else end_random_time(scene, changed)
     cut = update_cut(scene)
     chosen = choose_bodies(scene)
-    findings += coincident + find(inspect(scene, last_snapshot(scene)))
+    findings += find(inspect(scene, just_analysed=True))
     problems, notes = _sorted(severe(findings))
     return Preparation(
         tuple(stays + changes + separated),

@@ -5,6 +5,7 @@ import pytest
 from scenes import new_scene
 
 from nested_dielectric.checking.check import check as find_problems
+from nested_dielectric.checking.kinds import FOREIGN_ACROSS, Severity
 from nested_dielectric.demo.iced_water import build_scene
 from nested_dielectric.scene.media import media
 
@@ -22,7 +23,8 @@ def test_the_scene_holds_every_medium_and_nothing_is_wrong_with_them(scene):
     assert sum(name.startswith("Ice Cube") for name in names) == 3
     assert {"Tumbler", "Water", "Bubbles in Water", "Bubbles in Ice"} < set(names)
     assert "Straw" not in names and "Straw" in scene.objects
-    assert find_problems(scene) == []
+    assert [str(found) for found in find_problems(scene) if found.severity != Severity.NOTE] == []
+    assert [(note.kind, note.name) for note in find_problems(scene)] == [(FOREIGN_ACROSS, "Straw")]
 
 
 def test_ice_breaks_the_surface_and_water_reaches_into_the_glass(scene):

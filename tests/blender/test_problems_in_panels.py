@@ -285,4 +285,4 @@ def test_prepare_reports_not_thousands_of_problems(monkeypatch, capfd):
         add_plane(f"Sheet {index}", 1.0, (9, 9, index), (0, 0, 1), bpy.data.materials["Water"])
     bpy.ops.nested_dielectric.prepare()
     lines = "".join(capfd.readouterr()).splitlines()
-    assert sum("is not closed or" in line for line in lines) == 2
+    assert sum("is not closed (" in line for line in lines) == 2

@@ -24,7 +24,7 @@ from scenes import (
 )
 
 import nested_dielectric as nd
-from nested_dielectric.checking.overlap_checks import NEAR
+from nested_dielectric.checking.foreign_checks import NEAR
 
 # Half of the noise between two renders of 64 samples of the same interfaces is 0.001; unparted surfaces differ by 0.9.
 SAME = 0.006

@@ -153,4 +153,8 @@ def test_what_rests_on_part_of_a_foreign_plane_is_found(shift, answer):
     glass = placed(Body(grid_box((-1, -1, 0), (1, 1, 2), 2), turn, 1, 1)).reshape(-1, 3)
     standing = Solid(glass, np.arange(len(glass), dtype=np.int32).reshape(-1, 3))
     far = Solid(glass + 9.0, standing.triangles)
-    assert resting_surfaces([far, standing], top) == ([1] if answer else [])
+    places = [PlacedSolid(solid, np.eye(4)) for solid in (far, standing)]
+    found = resting_surfaces(places, top)
+    assert list(found) == ([1] if answer else [])
+    for faces in found.values():
+        assert (np.abs(glass.reshape(-1, 3, 3)[faces][:, :, 2]) < 1e-9).all()

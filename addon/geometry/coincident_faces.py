@@ -13,12 +13,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..geometry.contacts import Contact
-from ..geometry.coplanar import flat_sides
-from ..geometry.meshes import same_places
-from ..geometry.solids import Body, Solid
-from ..geometry.surfaces import FLOAT_ROUNDING, TOUCH_TOLERANCE
-from ..geometry.walls import Walls
+from .contacts import Contact
+from .coplanar import flat_sides
+from .meshes import same_places
+from .solids import Body, Solid
+from .surfaces import FLOAT_ROUNDING, TOUCH_TOLERANCE
+from .walls import Walls
 
 SEPARATION = 1e-4
 """Distance between separated faces, in diagonals of the smaller object: ten times what counts as the same place."""
