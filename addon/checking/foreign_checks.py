@@ -42,7 +42,8 @@ def foreign_findings(inspection: Inspection) -> Iterator[Finding]:
         for index, faces in found.items():
             resting.setdefault(int(near[index]), {})[foreign.obj.name] = faces
         if foreign.obj not in notes:
-            note = _place_of(foreign, [media[index] for index in near])
+            # Of what lies on a surface rounding decides on which side it is.
+            note = _place_of(foreign, [media[index] for number, index in enumerate(near) if number not in found])
             if note is not None:
                 notes[foreign.obj] = note
     yield from (_resting_finding(inspection, index, others) for index, others in sorted(resting.items()))

@@ -37,21 +37,31 @@ def precision_findings(inspection: Inspection) -> Iterator[Finding]:
     if far.any():
         yield _far_finding(inspection, boxes, steps, thick, np.flatnonzero(far))
     walls: dict[int, float] = {}
+    reaches: dict[int, float] = {}
     named = set()
     for index in np.flatnonzero((thickness > 0.0) & ~far):
         medium = inspection.media[index]
         if medium.obj in named:
             continue
-        found = _small_finding(medium, thickness[index]) or _wall_finding(medium, walls)
+        found = (
+            _small_finding(medium, thickness[index])
+            or _mesh_finding(medium, thickness[index], reaches)
+            or _wall_finding(medium, walls)
+        )
         if found is not None:
             named.add(medium.obj)
             yield found
 
 
 def _thickness(medium: Medium) -> float:
-    """Return the mean length of ways through a medium, scene units; 0 where its matrix leaves no volume."""
+    """Return the mean length of ways through a medium, scene units; 0 where its matrix leaves no volume.
+
+    Of what overlaps itself, whose volume may count twice or less than once, it is the smallest side of its box.
+    """
     if medium.place.flat:
         return 0.0
+    if medium.body.solid.overlaps_itself:
+        return float(np.subtract(*medium.place.box[::-1]).min())
     return medium.body.solid.mean_chord * float(np.cbrt(abs(np.linalg.det(medium.place.matrix[:3, :3]))))
 
 
@@ -88,6 +98,26 @@ def _small_finding(medium: Medium, thickness: float) -> Finding | None:
         return None
     text = f"is {thickness:.2g} thick, and Cycles' rays tell {SMALLEST:.2g} and more"
     remedy = f"scale all of the scene up by {SMALLEST / thickness:.2g} or more"
+    place = Place(point=tuple(np.mean(medium.place.box, axis=0).tolist()))
+    return Finding(PRECISION, medium.obj.name, text, remedy, place=place)
+
+
+def _mesh_finding(medium: Medium, thickness: float, reaches: dict[int, float]) -> Finding | None:
+    """Return what is wrong with a medium whose mesh lies far from the object's own origin.
+
+    :param reaches: largest coordinates of solids, by id; brought up to date.
+    """
+    solid = medium.body.solid
+    if id(solid) not in reaches:
+        reaches[id(solid)] = float(np.abs(solid.vertices).max())
+    scale = float(np.cbrt(abs(np.linalg.det(medium.place.matrix[:3, :3]))))
+    step = scale * float(np.spacing(np.float32(reaches[id(solid)])))
+    if step <= COARSEST * thickness:
+        return None
+    text = f"has its mesh so far from its own origin that its points go in steps of {step:.2g}"
+    remedy = (
+        "move the mesh to its origin (Object > Set Origin > Geometry to Origin) and model anew what has been rounded"
+    )
     place = Place(point=tuple(np.mean(medium.place.box, axis=0).tolist()))
     return Finding(PRECISION, medium.obj.name, text, remedy, place=place)
 

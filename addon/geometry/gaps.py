@@ -40,8 +40,8 @@ THIN_SHARE = 0.02
 TELLABLE = 2.0
 """The thinnest overlap that rays tell from none, in distances within which surfaces count as touching."""
 
-EVERY = 8
-"""Of the points of a surface one in so many is looked at first."""
+FIRST = 64
+"""Points of a surface that are looked at first."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,12 +115,12 @@ def find_layers(places: Sequence[PlacedSolid], touching: Sequence[Sequence[int]]
     nearly = []
     for start in range(0, len(pairs), CHUNK):
         some = slice(start, start + CHUNK)
-        views = _look(places, pairs[some], films[some], TELLABLE * tolerances[some], EVERY)
+        views = _look(places, pairs[some], films[some], TELLABLE * tolerances[some], FIRST)
         nearly += [number for number, view in enumerate(views, start) if _is_near(view, tolerances[number])]
     gaps, thin = [], []
     for number in nearly:
         some = slice(number, number + 1)
-        (view,) = _look(places, pairs[some], films[some], TELLABLE * tolerances[some], 1)
+        (view,) = _look(places, pairs[some], films[some], TELLABLE * tolerances[some], SAMPLES)
         first, second = pairs[number]
         overlaps = (view.distances < -tolerances[number]).nonzero()[0]
         if view.share(overlaps) >= THIN_SHARE:
@@ -160,14 +160,13 @@ def _in_air(
 
 
 def _look(
-    places: Sequence[PlacedSolid], pairs: Sequence[tuple[int, int]], before: np.ndarray, behind: np.ndarray, every: int
+    places: Sequence[PlacedSolid], pairs: Sequence[tuple[int, int]], before: np.ndarray, behind: np.ndarray, count: int
 ) -> list[_View]:
     """Look from points of the first of each pair for what of the second looks back.
 
-    :param before, behind: (n,) how far to look, for each pair.
+    :param before, behind: (n,) how far to look, for each pair; count: from how many points.
     """
-    count = len(range(0, SAMPLES, every))
-    points, normals, weights, faces = _samples([places[first] for first, _ in pairs], every)
+    points, normals, weights, faces = _samples([places[first] for first, _ in pairs], count)
     distances = np.full(len(faces), np.inf)
     for surfaces, numbers, trees in _groups(places, pairs):
         some = (count * numbers[:, None] + np.arange(count)).ravel()
@@ -188,20 +187,20 @@ def _look(
     return [_View(points[:, some], normals[:, some], weights[some], faces[some], distances[some]) for some in parts]
 
 
-def _samples(places: Sequence[PlacedSolid], every: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def _samples(places: Sequence[PlacedSolid], count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Return points on surfaces, as many on each: (3, k), their normals, the areas they stand for, their triangles."""
     matrices = np.array([place.matrix for place in places])
     samples = [place.solid.samples for place in places]
-    corners = np.array([each.corners[:, :, ::every] for each in samples])
+    corners = np.array([each.corners[:, :, :count] for each in samples])
     corners = np.einsum("nij,njck->icnk", matrices[:, :3, :3], corners) + matrices[:, :3, 3].T[:, None, :, None]
     normals = cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals = normals * np.sign(np.linalg.det(matrices[:, :3, :3]))[:, None]
     doubled = length(normals)
-    shares, areas = (np.array([getattr(each, name)[..., ::every] for each in samples]) for name in ("shares", "areas"))
+    shares, areas = (np.array([getattr(each, name)[..., :count] for each in samples]) for name in ("shares", "areas"))
     points = (corners * shares.transpose(1, 0, 2)).sum(axis=1)
     weights = np.divide(doubled, areas, out=np.zeros_like(doubled), where=areas > 0.0)
     normals = normals / np.maximum(doubled, 1e-300)
-    faces = np.array([each.faces[::every] for each in samples])
+    faces = np.array([each.faces[:count] for each in samples])
     return points.reshape(3, -1), normals.reshape(3, -1), weights.ravel(), faces.ravel()
 
 
@@ -234,7 +233,7 @@ def room_ahead(layer: Layer, wall: PlacedSolid, ahead: np.ndarray, reach: float)
 
     :param wall: the second body of the layer; ahead: (k,) how far before the points it begins; reach: how far to look into it.
     """
-    before = ahead + reach
+    before = np.full(len(ahead), ahead.max() + reach)
     way, _, distance, cosine = meet(
         wall, np.zeros(len(before), dtype=np.intp), layer.points, layer.normals, before, np.zeros(len(before))
     )
@@ -246,7 +245,7 @@ def room_ahead(layer: Layer, wall: PlacedSolid, ahead: np.ndarray, reach: float)
 
 def thin_walls(place: PlacedSolid, limit: float) -> Layer | None:
     """Return where a body's own wall is thinner than a limit, or None where no considerable part of it is."""
-    points, normals, weights, faces = _samples([place], 1)
+    points, normals, weights, faces = _samples([place], SAMPLES)
     count = len(faces)
     way, _, distance, cosine = meet(
         place, np.zeros(count, dtype=np.intp), points, -normals, np.full(count, limit), np.zeros(count)
