@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from ..geometry.gaps import thin_walls, thinnest_wall
+from ..geometry.solids import Solid
 from ..geometry.surfaces import FLOAT_ROUNDING, TOUCH_TOLERANCE
 from .finding import Action, Finding, Fix, Place
 from .inspection import Inspection, Medium, listed_faces
@@ -27,56 +29,94 @@ MOST_NAMES = 16
 """The most names of objects that one finding lists."""
 
 
+@dataclass(frozen=True, eq=False)
+class _Measures:
+    """What is measured of n media.
+
+    :ivar boxes: (n, 2, 3) in the world; scales: (n,) mean scales from their meshes to it.
+    :ivar thick: (n,) mean lengths of ways through them, scene units; infinite where a matrix leaves no volume.
+    :ivar steps: (n,) between neighbouring coordinates in the world; mesh_steps: in their meshes, as large as they show.
+    :ivar walls: (n,) thickness of their thinnest walls in their own units.
+    """
+
+    boxes: np.ndarray
+    scales: np.ndarray
+    thick: np.ndarray
+    steps: np.ndarray
+    mesh_steps: np.ndarray
+    walls: np.ndarray
+
+
+def _measures(media: Sequence[Medium]) -> _Measures:
+    """Measure media; each mesh is looked at once."""
+    solids = {id(medium.body.solid): medium.body.solid for medium in media}
+    known = {
+        key: (_own_thickness(solid), float(np.abs(solid.vertices).max()), thinnest_wall(solid))
+        for key, solid in solids.items()
+    }
+    own_thickness, reach, walls = np.array([known[id(medium.body.solid)] for medium in media]).T
+    linear = np.array([medium.place.matrix[:3, :3] for medium in media])
+    boxes = np.array([medium.place.box for medium in media])
+    volume = np.abs(np.linalg.det(linear))
+    flat = volume <= 1e-12 * np.prod(np.linalg.norm(linear, axis=1), axis=1)
+    scales = np.cbrt(volume)
+    thick = np.where(flat, np.inf, np.maximum(scales * own_thickness, 1e-300))
+    return _Measures(
+        boxes, scales, thick, _steps(np.abs(boxes).max(axis=(1, 2))), np.where(flat, 0.0, scales * _steps(reach)), walls
+    )
+
+
+def _own_thickness(solid: Solid) -> float:
+    """Return the mean length of ways through a solid in its own units.
+
+    Of what overlaps itself, whose volume may count twice or less than once, it is the smallest side of its box.
+    """
+    if solid.overlaps_itself:
+        return float(np.ptp(solid.vertices, axis=0).min())
+    return solid.mean_chord
+
+
+def _steps(coordinates: np.ndarray) -> np.ndarray:
+    """Return how far single precision has the next number from some coordinates."""
+    return np.spacing(coordinates.astype(np.float32)).astype(np.float64)
+
+
 def precision_findings(inspection: Inspection) -> Iterator[Finding]:
     """Yield media that are too far away, too small or too thin for single precision; one finding for all that are far away."""
-    thickness = np.array([_thickness(medium) for medium in inspection.media])
-    boxes = np.array([medium.place.box for medium in inspection.media]).reshape(-1, 2, 3)
-    steps = np.spacing(np.abs(boxes).max(axis=(1, 2)).astype(np.float32)).astype(np.float64)
-    thick = np.maximum(thickness, 1e-300)
-    far = (thickness > 0.0) & (steps > COARSEST * thick)
+    if not inspection.media:
+        return
+    measures = _measures(inspection.media)
+    far = measures.steps > COARSEST * measures.thick
     if far.any():
-        yield _far_finding(inspection, boxes, steps, thick, np.flatnonzero(far))
-    walls: dict[int, float] = {}
-    reaches: dict[int, float] = {}
+        yield _far_finding(inspection, measures, np.flatnonzero(far))
+    small = measures.thick < SMALLEST
+    coarse = measures.mesh_steps > COARSEST * measures.thick
     named = set()
-    for index in np.flatnonzero((thickness > 0.0) & ~far):
+    for index in np.flatnonzero(~far & (small | coarse | np.isfinite(measures.walls))):
         medium = inspection.media[index]
         if medium.obj in named:
             continue
-        found = (
-            _small_finding(medium, thickness[index])
-            or _mesh_finding(medium, thickness[index], reaches)
-            or _wall_finding(medium, walls)
-        )
+        if small[index]:
+            found = _small_finding(medium, float(measures.thick[index]))
+        elif coarse[index]:
+            found = _mesh_finding(medium, float(measures.mesh_steps[index]))
+        else:
+            found = _wall_finding(medium, float(measures.walls[index]))
         if found is not None:
             named.add(medium.obj)
             yield found
 
 
-def _thickness(medium: Medium) -> float:
-    """Return the mean length of ways through a medium, scene units; 0 where its matrix leaves no volume.
-
-    Of what overlaps itself, whose volume may count twice or less than once, it is the smallest side of its box.
-    """
-    if medium.place.flat:
-        return 0.0
-    if medium.body.solid.overlaps_itself:
-        return float(np.subtract(*medium.place.box[::-1]).min())
-    return medium.body.solid.mean_chord * float(np.cbrt(abs(np.linalg.det(medium.place.matrix[:3, :3]))))
-
-
-def _far_finding(
-    inspection: Inspection, boxes: np.ndarray, steps: np.ndarray, thick: np.ndarray, far: np.ndarray
-) -> Finding:
+def _far_finding(inspection: Inspection, measures: _Measures, far: np.ndarray) -> Finding:
     """Return what is wrong with media at whose place coordinates are too coarse.
 
-    :param boxes: (n, 2, 3) of all media; steps: (n,) between coordinates there; thick: (n,) means of ways through them; far:
-        indices of those that are.
+    :param far: indices of those.
     """
+    boxes, steps, thick = measures.boxes, measures.steps, measures.thick
     worst = far[np.argmax(steps[far] / thick[far])]
     names = list(dict.fromkeys(inspection.media[index].obj.name for index in (worst, *far)))
     middle = (boxes[:, 0].min(axis=0) + boxes[:, 1].max(axis=0)) / 2.0
-    near = np.spacing(np.abs(boxes - middle).max(axis=(1, 2)).astype(np.float32))
+    near = np.maximum(_steps(np.abs(boxes - middle).max(axis=(1, 2))), measures.mesh_steps)
     helps = bool((near <= COARSEST * thick)[far].all())
     text = (
         f"stands where coordinates go in steps of {steps[worst]:.2g}, too coarse for what is {thick[worst]:.2g} thick"
@@ -92,49 +132,39 @@ def _far_finding(
     return Finding(PRECISION, names[0], text, remedy, tuple(names[1:MOST_NAMES]), place, fix)
 
 
-def _small_finding(medium: Medium, thickness: float) -> Finding | None:
-    """Return what is wrong with a medium that is so small that rays do not get through it."""
-    if thickness >= SMALLEST:
-        return None
+def _small_finding(medium: Medium, thickness: float) -> Finding:
+    """Return that a medium is so small that rays do not get through it."""
     text = f"is {thickness:.2g} thick, and Cycles' rays tell {SMALLEST:.2g} and more"
     remedy = f"scale all of the scene up by {SMALLEST / thickness:.2g} or more"
-    place = Place(point=tuple(np.mean(medium.place.box, axis=0).tolist()))
-    return Finding(PRECISION, medium.obj.name, text, remedy, place=place)
+    return Finding(PRECISION, medium.obj.name, text, remedy, place=_middle(medium))
 
 
-def _mesh_finding(medium: Medium, thickness: float, reaches: dict[int, float]) -> Finding | None:
-    """Return what is wrong with a medium whose mesh lies far from the object's own origin.
+def _mesh_finding(medium: Medium, step: float) -> Finding:
+    """Return that the mesh of a medium lies far from the object's own origin.
 
-    :param reaches: largest coordinates of solids, by id; brought up to date.
+    :param step: between neighbouring coordinates of its points, scene units.
     """
-    solid = medium.body.solid
-    if id(solid) not in reaches:
-        reaches[id(solid)] = float(np.abs(solid.vertices).max())
-    scale = float(np.cbrt(abs(np.linalg.det(medium.place.matrix[:3, :3]))))
-    step = scale * float(np.spacing(np.float32(reaches[id(solid)])))
-    if step <= COARSEST * thickness:
-        return None
     text = f"has its mesh so far from its own origin that its points go in steps of {step:.2g}"
     remedy = (
         "move the mesh to its origin (Object > Set Origin > Geometry to Origin) and model anew what has been rounded"
     )
-    place = Place(point=tuple(np.mean(medium.place.box, axis=0).tolist()))
-    return Finding(PRECISION, medium.obj.name, text, remedy, place=place)
+    return Finding(PRECISION, medium.obj.name, text, remedy, place=_middle(medium))
 
 
-def _wall_finding(medium: Medium, walls: dict[int, float]) -> Finding | None:
+def _middle(medium: Medium) -> Place:
+    """Return the middle of a medium's box as a place."""
+    return Place(point=tuple(np.mean(medium.place.box, axis=0).tolist()))
+
+
+def _wall_finding(medium: Medium, wall: float) -> Finding | None:
     """Return what is wrong with a medium whose own walls are thinner than rays tell.
 
-    :param walls: thinnest walls of solids, by id; brought up to date.
+    :param wall: the thickness of the thinnest in its own units.
     """
-    solid, place = medium.body.solid, medium.place
-    if id(solid) not in walls:
-        walls[id(solid)] = thinnest_wall(solid)
-    if np.isinf(walls[id(solid)]):
-        return None
+    place = medium.place
     size = float(np.linalg.norm(np.subtract(*place.box)))
     limit = THINNEST * (TOUCH_TOLERANCE * size + FLOAT_ROUNDING * float(np.abs(place.box).max()))
-    least = walls[id(solid)] * float(np.linalg.svd(place.matrix[:3, :3], compute_uv=False)[-1])
+    least = wall * float(np.linalg.svd(place.matrix[:3, :3], compute_uv=False)[-1])
     layer = thin_walls(place, limit) if least < limit else None
     if layer is None:
         return None
