@@ -9,6 +9,7 @@ from functools import cached_property
 import bpy
 import numpy as np
 
+from ..analysis.session import analysis_of
 from ..analysis.snapshot import SceneSnapshot, take_snapshot
 from ..analysis.solid_cache import EvaluatedMesh, mesh_of
 from ..geometry import contacts
