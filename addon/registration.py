@@ -12,9 +12,11 @@ from .checking.version_checks import version_problems
 from .nodes.compatibility import blender_note, blender_problem
 from .nodes.render_settings import settings_problem
 from .preparation import live, versions
+from .scene.debug_views import debug_notice
 from .scene.media import media
-from .ui import asset_library, media_list, media_rows, pictures, preferences
+from .ui import asset_library, legend_overlay, media_list, media_rows, pictures, preferences
 from .ui.operators import (
+    debug_operators,
     dispersion_operators,
     light_operators,
     preparation_operators,
@@ -25,6 +27,7 @@ from .ui.operators import (
 )
 from .ui.panels import (
     add_menu,
+    debug_panel,
     light_panel,
     media_list_panel,
     medium_panels,
@@ -45,6 +48,7 @@ CLASSES = (
     *dispersion_operators.CLASSES,
     *update_operators.CLASSES,
     *light_operators.CLASSES,
+    *debug_operators.CLASSES,
     *preset_operators.CLASSES,
     *own_preset_operators.CLASSES,
     *preset_menus.CLASSES,
@@ -58,6 +62,7 @@ CLASSES = (
     *scene_panels.CLASSES,
     *medium_panels.CLASSES,
     *light_panel.CLASSES,
+    *debug_panel.CLASSES,
     *scene_panels.LAST_CLASSES,
 )
 """In the order in which they are registered: panels after those that they stand below."""
@@ -109,6 +114,7 @@ def register() -> None:
         _add_drawings(undo)
         asset_library.follow(preferences.preference("asset_library"))
         undo.callback(asset_library.follow, False)
+        undo.callback(legend_overlay.show_legends())
         _add_handlers(undo)
         live.install()
         undo.callback(live.remove)
@@ -166,6 +172,9 @@ def warn_before_render(scene: bpy.types.Scene, *_: object) -> None:
     problem = blender_problem() or settings_problem(scene)
     if problem and media(scene):
         print(f"Nested Dielectric: {problem}", file=sys.stderr)
+    shown = debug_notice(scene)
+    if shown and media(scene):
+        print(f"Nested Dielectric: {shown}", file=sys.stderr)
     for each in material_problems(scene):
         print(f"Nested Dielectric: {each}", file=sys.stderr)
 

@@ -29,6 +29,18 @@ class Exterior(IntEnum):
     """Of a material: the properties of each of its objects tell."""
 
 
+class DebugView(IntEnum):
+    """What a debug view shows of surfaces instead of light."""
+
+    NONE = 0
+    MEDIUM = 1
+    VALIDITY = 2
+    DEPTH = 3
+    RAYS = 4
+    BODY = 5
+    TOLD = 6
+
+
 class LightKind(IntEnum):
     """Shapes of lights that lobes carry."""
 
@@ -191,3 +203,12 @@ LEAST_TRANSMITTANCE = 1e-6
 
 MOST_STRETCH = BY_KEYWORD["anisotropy"].maximum
 """Anisotropy that is taken, either way."""
+
+DEBUG_ALARM = -2.0
+"""What debug views take for a surface that shows the alarm."""
+
+DEBUG_HIDDEN = -3.0
+"""What the debug view of media takes for a surface that does not exist."""
+
+TOLD_BY_FACE = 4.0
+"""What the debug view of facts shows, beside an :class:`Exterior`, where the face itself tells."""

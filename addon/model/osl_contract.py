@@ -18,6 +18,7 @@ CODES = {
     "LIGHT": contract.LightKind,
     "SHADOW": contract.ShadowMode,
     "TANGENT": contract.TangentSource,
+    "VIEW": contract.DebugView,
 }
 """Enumerations by what stands before their words."""
 
@@ -25,6 +26,8 @@ NUMBERS = (
     "CUT_AIR",
     "CUT_HIDDEN",
     "CUT_SPLITS",
+    "DEBUG_ALARM",
+    "DEBUG_HIDDEN",
     "EMITTER_RADIANCE",
     "FACTS_ABSORBS",
     "FACTS_CODES",
@@ -42,6 +45,7 @@ NUMBERS = (
     "NO_SOLE_PRIORITY",
     "PROBE_HITS",
     "RATIO_MARGIN",
+    "TOLD_BY_FACE",
 )
 """Constants of the contract that the shader takes as they are."""
 

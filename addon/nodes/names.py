@@ -79,6 +79,17 @@ CENTRE = "nd_centre"
 Where there is none, volumes absorb of shadow rays.
 """
 
+DEBUG_VIEW = "nd_debug_view"
+"""Custom property of a scene, or of a view layer that shows another view: the code of a debug view that is on.
+
+It is negative where numbers are to show in the place of colours.
+"""
+
+DEBUG_THROUGH = "nd_debug_through"
+"""Another: how many surfaces a debug view lets through before it shows one."""
+
+DEBUG_GROUP = "Nested Dielectric Debug View"
+
 OBJECT_PROPERTIES = (OUTSIDE_PROPERTY, OUTSIDE_TRANSMITTANCE_PROPERTY)
 """Custom properties in which objects keep a scene's facts, four floats each."""
 

@@ -9,11 +9,15 @@ from ..model.parameter import Parameter
 from ..model.parameters import SOCKETS
 from .absorption import absorption_coefficients, absorption_volume
 from .closures import add_disperser, add_front_ior_test
+from .debug_view import DebugPicture
 from .layout import arrange
 from .lights_group import EMITTER_OUTPUT, LIGHT_COUNT_OUTPUT, LIGHT_OUTPUTS, ensure_lights
 from .names import (
     COORDINATE_NODE,
     CYCLES_OUTPUT,
+    DEBUG_GROUP,
+    DEBUG_THROUGH,
+    DEBUG_VIEW,
     FACTS_SCENE,
     GIVES_BACK_SOCKET,
     LIGHTS_NAME,
@@ -118,6 +122,8 @@ class _Wiring:
         self.feed("AttributeRequests", requests)
         self.feed("Spectral", spectral)
         self.feed("FrontIOR", front_ior)
+        view = self.scene_value(f'["{DEBUG_VIEW}"]')
+        self.feed("View", abs(view))
         told_scene = self.scene_value(f'["{FACTS_SCENE}"]')
         natives_by_volume = told_scene.equals(self.value(BY_VOLUME_SOCKET))
         self.by_volume = Number(self.tree, self.unless_native("FLOAT", by_volume.socket, natives_by_volume.socket))
@@ -126,6 +132,7 @@ class _Wiring:
             "Holds": told_scene.equals(self.value(SCENE_SOCKET)).socket,
             "By Volume": self.by_volume.socket,
             "Cut": cut.socket,
+            "Debug View": view.socket,
         }
 
     def link_tables(self) -> None:
@@ -157,9 +164,15 @@ class _Wiring:
         native = self._add_part(NATIVE_GROUP, body)
         running = self.script.outputs["Running"]
         by_shader = mix_shaders(self.tree, running, native["Surface"], self.script.outputs["BSDF"])
-        self.link_output(CYCLES_OUTPUT, self.unless_native("SHADER", by_shader, native["Surface"]))
+        surface = self.unless_native("SHADER", by_shader, native["Surface"])
+        number = mix_values(self.tree, "FLOAT", running, native["Debug Number"], self.script.outputs["DebugNumber"])
+        self.known["Debug Number"] = self.unless_native("FLOAT", number, native["Debug Number"])
+        self.known["Look Through"] = self.scene_value(f'["{DEBUG_THROUGH}"]').socket
+        debug = self._add_part(DEBUG_GROUP, DebugPicture())
+        self.link_output(CYCLES_OUTPUT, mix_shaders(self.tree, debug["Shows"], surface, debug["Surface"]))
         of_shadows = Number(self.tree, self.unless_native("FLOAT", 0.0, native["Shadow by Volume"]))
-        volume = absorption_volume(self.tree, self.coefficients, self.absorbs, self.by_volume, of_shadows)
+        absorbs = self.absorbs * (1.0 - (abs(Number(self.tree, self.known["Debug View"])) > 0.5))
+        volume = absorption_volume(self.tree, self.coefficients, absorbs, self.by_volume, of_shadows)
         self.link_output(VOLUME_OUTPUT, volume)
         mask = add_script(self.tree, MASK_OUTPUT, self.scripts[MASK_FILE], {"Priority": "INT"}, {"Mask": "FLOAT"})
         self.tree.links.new(self.known["Priority"], mask.inputs["Priority"])
@@ -207,13 +220,14 @@ def _script_inputs() -> dict[str, str]:
         "TableMeans": "VECTOR",
         "Weight": "COLOR",
         "Wavelength": "FLOAT",
+        "View": "INT",
     }
 
 
 def _script_outputs() -> dict[str, str]:
     """Return the kinds of the shader's outputs, by their names in it."""
     facts = {name.replace(" ", ""): kind for name, (kind, _) in FACT_OUTPUTS.items()}
-    return {"BSDF": "SHADER", "Running": "FLOAT"} | facts
+    return {"BSDF": "SHADER", "Running": "FLOAT", "DebugNumber": "FLOAT"} | facts
 
 
 def _add_menu(tree: bpy.types.NodeTree, source: Socket, parameter: Parameter) -> Socket:

@@ -11,6 +11,7 @@ from pathlib import PurePath
 
 import bpy
 
+from ..nodes.names import DEBUG_VIEW
 from .media import media
 
 LIGHT_GROUP = "Media"
@@ -37,7 +38,7 @@ _MEDIA_LIGHT = "Media Light"
 
 
 def add_passes(scene: bpy.types.Scene) -> tuple[str, ...]:
-    """Make every view layer that renders write its four passes as the layers of an OpenEXR file.
+    """Make every view layer that renders, but for those of debug views, write its four passes as the layers of an OpenEXR file.
 
     Direct Refraction is direct light that lobes refracted, seen through media; Direct Specular is what media emit or
     reflect of lights towards the camera; Indirect Refraction and Indirect Specular are all else that media refract and
@@ -51,7 +52,7 @@ def add_passes(scene: bpy.types.Scene) -> tuple[str, ...]:
     if scene.render.engine != "CYCLES":
         return (f"scene {scene.name!r} renders with {scene.render.engine}; its passes are Cycles': prepare it first",)
     changes = _put_in_light_group(scene)
-    layers = [layer for layer in scene.view_layers if layer.use] or [scene.view_layers[0]]
+    layers = [layer for layer in scene.view_layers if layer.use and DEBUG_VIEW not in layer] or [scene.view_layers[0]]
     for layer in layers:
         changes += _turn_on_passes(layer)
     changes += _ensure_compositor(scene, layers)

@@ -20,6 +20,7 @@ from ..compatibility import NATIVE_DISPERSION_VERSION
 from ..numbers import Number
 from ..shader_nodes import Socket, attribute, lazily
 from .coefficients import Coefficients
+from .debug_number import DebugNumber
 from .dispersing import Dispersing
 from .glass import Glass, Special
 from .light import Light
@@ -74,12 +75,12 @@ class NativeBody(NativePart):
         self.add_output("Is Exit", "FLOAT", exists * self.is_exit)
         own = attribute(self.tree, "OBJECT", PRIORITY_PROPERTY)
         has_own = Number(self.tree, own.outputs["Alpha"]) > 0.5
-        self.add_output(
-            "Priority Inside",
-            "FLOAT",
-            self.choose(has_own, self.raw("Priority"), Number(self.tree, own.outputs["Fac"])),
-        )
+        inside = self.choose(has_own, self.raw("Priority"), Number(self.tree, own.outputs["Fac"]))
+        self.add_output("Priority Inside", "FLOAT", inside)
         self.add_output("Priority Outside", "FLOAT", outside["Priority Outside"])
+        debug_facts = {name: outside[name] for name in ("Known", "Exists", "Told", "Priority Outside")}
+        debug_number = self.call(DebugNumber(), **debug_facts, **{"Priority Inside": inside})
+        self.add_output("Debug Number", "FLOAT", debug_number["Debug Number"])
         white = self.join((1.0, 1.0, 1.0))
         self.add_output("Arriving Light", "COLOR", self.choose_vector(exists, white, light["Arrives"]))
 

@@ -38,6 +38,12 @@ KINDS = {parameter.name: "INT" if parameter.kind == "MENU" else parameter.kind f
     "Reflected": "FLOAT",
     "Refracted": "FLOAT",
     "Shown Roughness": "FLOAT",
+    "Debug View": "FLOAT",
+    "Known": "FLOAT",
+    "Exists": "FLOAT",
+    "Told": "FLOAT",
+    "Priority Inside": "FLOAT",
+    "Priority Outside": "FLOAT",
 }
 """Kinds of the parts' inputs: parameters, of menus the places of their choices; stored facts; results of parts.
 

@@ -19,6 +19,7 @@ from ...model.contract import (
     NO_PRIORITY,
     OUTSIDE_PROPERTY,
     OUTSIDE_TRANSMITTANCE_PROPERTY,
+    TOLD_BY_FACE,
     DispersionModel,
     Exterior,
 )
@@ -57,6 +58,7 @@ class Surroundings(NativePart):
         )
         known = self.face_has_facts.math("MAXIMUM", known)
         by_faces = self.surely(self.raw("Outside").equals(Exterior.UNKNOWN))
+        self.add_output("Told", "FLOAT", self.choose(self.face_has_facts, self.outside, TOLD_BY_FACE))
         self.add_output("Known", "FLOAT", known)
         self.add_output("Exists", "FLOAT", exists)
         self.add_output(

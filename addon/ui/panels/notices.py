@@ -12,8 +12,10 @@ import bpy
 from ...cutting.backends import last_choice
 from ...nodes.compatibility import blender_problem
 from ...nodes.render_settings import achromatic_reason, settings_problem
+from ...scene.debug_views import debug_notice
 from ..drawing import draw_alert
 from ..media_list import listed_media
+from ..operators.debug_operators import ShowDebugView
 from ..operators.preparation_operators import Prepare
 
 MOST_CHARACTERS = 100
@@ -51,11 +53,25 @@ def draw_in_properties(self: bpy.types.Panel, context: bpy.types.Context) -> Non
     if problem:
         draw_alert(self.layout, context, problem)
         self.layout.operator(Prepare.bl_idname, icon="CHECKMARK")
+    draw_debug_notice(self.layout, context)
+
+
+def _debug_notice(scene: bpy.types.Scene) -> str:
+    """Return that a debug view is on in a scene with media; empty where none is."""
+    return debug_notice(scene) if listed_media(scene).rows else ""
+
+
+def draw_debug_notice(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw that a debug view is on, and the button that switches it off."""
+    notice = _debug_notice(context.scene)
+    if notice:
+        draw_alert(layout, context, notice)
+        layout.operator(ShowDebugView.bl_idname, text="Debug View: None", icon="X").view = "NONE"
 
 
 def draw_in_line(self: bpy.types.Header | bpy.types.Menu, context: bpy.types.Context) -> None:
     """Draw the notice in one line of a header or a menu."""
-    problem = render_problem(context.scene)
+    problem = render_problem(context.scene) or _debug_notice(context.scene)
     if problem:
         row = self.layout.row()
         row.alert = True

@@ -19,7 +19,7 @@ from ..operators.preparation_operators import ClearAnalysis
 from ..operators.update_operators import UpdateMaterials
 from ..presets.preset_menus import draw_presets
 from .media_list_panel import draw_media, draw_priority
-from .notices import render_problem
+from .notices import draw_debug_notice, render_problem
 from .preparation_panel import draw_preparation
 from .rendering_panel import draw_backend, draw_cut
 
@@ -28,6 +28,7 @@ from .rendering_panel import draw_backend, draw_cut
 def draw(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draw everything that a panel shows, for the Object properties and the 3D view alike."""
     draw_problem(layout, context)
+    draw_debug_notice(layout, context)
     draw_preparation(layout, context)
     draw_backend(layout, context)
     draw_cut(layout, context)
