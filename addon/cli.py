@@ -37,6 +37,7 @@ from .model.files import ending_at_once
 from .model.gamuts import GAMUTS
 from .model.parameter import ParameterError
 from .nodes.render_with import BACKENDS
+from .preparation.guard import faults
 
 DEMO_OUTPUT = Path("out/iced_water.png")
 
@@ -56,6 +57,8 @@ def main(arguments: list[str] | None = None) -> int:
         with ending_at_once(bpy.app.tempdir):
             code = options.run(options)
             sys.stdout.flush()
+        if faults():
+            raise Failure(str(faults()[0]))
     except BrokenPipeError:  # whoever read it has enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1

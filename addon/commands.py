@@ -180,7 +180,7 @@ def run_update(options: argparse.Namespace) -> None:
 def run_presets(options: argparse.Namespace) -> None:
     """List all presets."""
     found = catalogue()
-    width = max(map(len, found.presets))
+    width = max(map(len, found.presets), default=0)
     for key, preset in found.presets.items():
         index = preset.parameters.get("ior", BY_KEYWORD["ior"].default)
         print(f"{key:{width}} {index:<9} {preset.description}{' (yours)' if key in found.own else ''}")

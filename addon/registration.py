@@ -12,6 +12,7 @@ from .checking.version_checks import version_problems
 from .nodes.compatibility import blender_note, blender_problem
 from .nodes.render_settings import settings_problem
 from .preparation import live, versions
+from .preparation.guard import forget_faults, guarded
 from .scene.debug_views import debug_notice
 from .scene.media import media
 from .ui import asset_library, legend_overlay, media_list, media_rows, pictures, preferences
@@ -142,6 +143,7 @@ def _add_handlers(undo: ExitStack) -> None:
     """Let Blender call the handlers of the user interface; :mod:`live` adds those of the analysis after them."""
     for handlers, handler in (
         (bpy.app.handlers.render_init, warn_before_render),
+        (bpy.app.handlers.load_pre, forget_old_faults),
         (bpy.app.handlers.load_post, mend_materials),
         (bpy.app.handlers.blend_import_post, mend_materials),
         (bpy.app.handlers.blend_import_pre, dropped.note_before),
@@ -167,6 +169,14 @@ def unregister() -> None:
 
 
 @bpy.app.handlers.persistent
+@guarded("before a file was opened", writes=False)
+def forget_old_faults(*_: object) -> None:
+    """Forget the errors that were caught in the file that is open."""
+    forget_faults()
+
+
+@bpy.app.handlers.persistent
+@guarded("before a render", writes=False)
 def warn_before_render(scene: bpy.types.Scene, *_: object) -> None:
     """Say on the terminal why the media of a scene will not look right, where no panel is open to say so."""
     problem = blender_problem() or settings_problem(scene)
@@ -180,6 +190,7 @@ def warn_before_render(scene: bpy.types.Scene, *_: object) -> None:
 
 
 @bpy.app.handlers.persistent
+@guarded("while a file was opened")
 def mend_materials(*_: object) -> None:
     """Make materials right that come from a Blender or an extension to which this Blender's Cycles was unknown.
 

@@ -44,6 +44,17 @@ def nothing_is_followed_any_more():
 
 
 @pytest.fixture(autouse=True)
+def no_handler_raises_anything():
+    """What handlers, timers and drawing raise is caught in Blender, and told to artists; here it is a failure."""
+    yield
+    guard = sys.modules.get("nested_dielectric.preparation.guard")
+    if guard is not None:
+        details = [fault.details for fault in guard.faults()]
+        guard.forget_faults()
+        assert not details, "\n".join(details)
+
+
+@pytest.fixture(autouse=True)
 def renders_nothing(request):
     """Hold tests that are marked as quick to it."""
     if request.node.get_closest_marker("quick") is None:

@@ -13,6 +13,7 @@ import bpy
 
 from ..model.parameter import PRIORITY_PROPERTY
 from ..nodes.names import OBJECT_PROPERTIES
+from ..nodes.stored import plain
 
 State = tuple[Any, ...]
 """Of a scene; two that are equal tell that nothing was changed between them."""
@@ -76,10 +77,3 @@ def _of_hidden(obj: bpy.types.Object) -> State:
     """Return what matters of an object that is not evaluated."""
     materials = [slot.material.session_uid if slot.material else None for slot in obj.material_slots]
     return obj.hide_render, obj.hide_viewport, len(obj.modifiers), materials
-
-
-def plain(value: Any) -> Any:
-    """Return what a custom property holds, to be compared and copied."""
-    if hasattr(value, "to_dict"):
-        return value.to_dict()
-    return value.to_list() if hasattr(value, "to_list") else value

@@ -25,6 +25,7 @@ from ..nodes.names import (
 )
 from ..nodes.native.light import LARGEST_EXPONENT
 from ..nodes.sockets import has_analysis
+from ..nodes.stored import stored_numbers
 from ..scene.materials import absorption_coefficients, dielectric_node
 from ..scene.media import CUT_SETTING, is_cut_surface
 from .facts import ExteriorFacts, common_facts, packed
@@ -103,20 +104,15 @@ def write_object(obj: bpy.types.Object, facts: ExteriorFacts | None) -> None:
             if before is not None:
                 del obj[name]
                 obj.update_tag()
-        elif _as_four_numbers(before) != value:
+        elif stored_numbers(obj, name, 4) != value:
             obj.pop(name, None)  # or it may keep another type
             obj[name] = value
             obj.update_tag()
 
 
-def _as_four_numbers(value: object) -> tuple | None:
-    """Return the four numbers that a custom property holds, or None if others have put anything else there."""
-    return tuple(value) if getattr(value, "typecode", None) in ("f", "d") and len(value) == 4 else None
-
-
 def may_hold_objects(obj: bpy.types.Object) -> bool:
     """Return whether an object's own properties leave it open that objects that are no media stand in it."""
-    values = _as_four_numbers(obj.get(OBJECT_PROPERTIES[0]))
+    values = stored_numbers(obj, OBJECT_PROPERTIES[0], 4)
     return values is None or not int(values[0]) & FACTS_HOLDS_NO_OBJECTS
 
 
@@ -164,10 +160,10 @@ def write_centre(snapshot: SceneSnapshot) -> None:
     deepest = max((max(absorption_coefficients(node)) for node in nodes), default=0.0)
     boxes = np.array([instance.box for instance in snapshot.bodies]).reshape(-1, 2, 3)
     low, high = boxes[:, 0].min(axis=0, initial=np.inf), boxes[:, 1].max(axis=0, initial=-np.inf)
-    before = np.array(snapshot.scene.get(CENTRE, (np.inf,) * 3), dtype=float)
+    before = stored_numbers(snapshot.scene, CENTRE, 3)
     if varies or black or not len(boxes) or deepest * np.linalg.norm(high - low) > LARGEST_EXPONENT:
         if snapshot.scene.pop(CENTRE, None) is not None:
             snapshot.scene.update_tag()
-    elif before.shape != (3,) or not np.all((before >= low) & (before <= high)):
+    elif before is None or not np.all((before >= low) & (before <= high)):
         snapshot.scene[CENTRE] = tuple(map(float, (low + high) / 2.0))
         snapshot.scene.update_tag()

@@ -12,6 +12,7 @@ from ..analysis import findings, mesh_modifiers
 from ..nodes.cutting.names import FRAME_INPUT
 from ..nodes.cutting.plan import Plan, enclosing_layers, values_of
 from ..nodes.cutting.surfaces import SURFACE_INPUTS, ensure_kept_tree, ensure_surface_tree
+from ..nodes.wholeness import is_whole
 from ..scene.materials import dielectric_node
 from ..scene.shapes import mesh_digest
 from .copied_settings import copy_settings
@@ -109,8 +110,8 @@ def _plain_value(value):
 
 def _exchange_tree(modifier: bpy.types.NodesModifier, tree: bpy.types.NodeTree) -> None:
     """Give a surface's modifier another group and the same inputs; remove the group that it had if nothing uses it."""
-    had_group = modifier.node_group is not None
-    values = {name: input_of(modifier, name).value for name in SURFACE_INPUTS if had_group}
+    was_whole = is_whole(modifier.node_group)
+    values = {name: input_of(modifier, name).value for name in SURFACE_INPUTS if was_whole}
     before, modifier.node_group = modifier.node_group, tree
     set_inputs(modifier, values)
     remove_unused_tree(before)

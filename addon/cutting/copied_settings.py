@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import bpy
 
-from ..analysis.changes import plain
 from ..nodes.animation import curves
+from ..nodes.stored import plain
 from ..scene import ray_visibility
 from ..scene.media import CUT_OF, HIDDEN_BY_CUT
 from .drivers import drive_by

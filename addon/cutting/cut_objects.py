@@ -17,6 +17,7 @@ from ..model.contract import CUT
 from ..nodes.cutting.names import BODY_INPUT, CUT_INPUT, END_INPUT, OWN_INPUT
 from ..nodes.cutting.plan import Plan
 from ..nodes.cutting.surfaces import PART, ensure_part_tree, ensure_surface_tree
+from ..nodes.wholeness import is_whole
 from ..scene import ray_visibility
 from ..scene.media import CUT_OF, HIDDEN_BY_CUT
 from .copied_settings import SUFFIX, copy_light_linking, copy_settings
@@ -26,6 +27,7 @@ from .cut_collection import (
     ensure_nodes_modifier,
     find_collection,
     remove_object,
+    remove_unused_tree,
     surfaces_of,
 )
 from .cutter import ensure_cutter_nodes, ensure_cutters, set_inputs, told_by_faces
@@ -50,7 +52,8 @@ def show_plan(scene: bpy.types.Scene, plan: Plan) -> None:
     ensure_cutter_nodes(cutter, plan)
     for place, part in enumerate(parts):
         modifier = ensure_nodes_modifier(part)
-        modifier.node_group = ensure_part_tree()
+        before, modifier.node_group = modifier.node_group, ensure_part_tree()
+        remove_unused_tree(before)
         set_inputs(modifier, {CUT_INPUT: cutter, BODY_INPUT: place * PART, END_INPUT: (place + 1) * PART})
     tree = ensure_surface_tree()
     for obj, number in numbers.items():
@@ -58,8 +61,9 @@ def show_plan(scene: bpy.types.Scene, plan: Plan) -> None:
             surfaces[obj] = _new_surface(obj, collection)
         surface = surfaces[obj]
         modifier = ensure_nodes_modifier(surface)
-        if modifier.node_group is None:
-            modifier.node_group = tree
+        if not is_whole(modifier.node_group):
+            before, modifier.node_group = modifier.node_group, tree
+            remove_unused_tree(before)
         source = parts[number // PART] if parts else cutter
         set_inputs(modifier, {OWN_INPUT: obj, CUT_INPUT: source, BODY_INPUT: number})
         copy_settings(surface, obj)

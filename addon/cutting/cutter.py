@@ -10,10 +10,12 @@ from hashlib import sha256
 
 import bpy
 
+from ..nodes.animation import curves
 from ..nodes.cut_faces import CUT_WITH_COLOUR, CUT_WITH_DISPERSION
 from ..nodes.cutting.cut import make_cut_tree
 from ..nodes.cutting.plan import Plan, enclosing_layers, value_name, values_of
 from ..nodes.cutting.surfaces import PART
+from ..nodes.wholeness import is_whole
 from ..scene.materials import dielectric_node
 from ..scene.media import CUT_OF
 from .cut_collection import (
@@ -74,7 +76,7 @@ def ensure_cutter_nodes(cutter: bpy.types.Object, plan: Plan) -> None:
     """Give the cutter the nodes of a plan, and drivers that bring the values of materials, unless it has them."""
     digest = plan_digest(plan)
     modifier = ensure_nodes_modifier(cutter)
-    if cutter.get(PLAN) == digest and modifier.node_group is not None:
+    if cutter.get(PLAN) == digest and is_whole(modifier.node_group) and _is_driven(cutter, plan):
         return
     cutter.animation_data_clear()
     before, modifier.node_group = modifier.node_group, None
@@ -84,6 +86,12 @@ def ensure_cutter_nodes(cutter: bpy.types.Object, plan: Plan) -> None:
     for place in enclosing_layers(plan):
         for name in values_of(plan.layers[place]):
             _drive_input(cutter, modifier, value_name(name, place), plan.layers[place].material, name)
+
+
+def _is_driven(cutter: bpy.types.Object, plan: Plan) -> bool:
+    """Return whether the cutter has as many drivers as a plan needs."""
+    driven = {curve.data_path for curve in curves(cutter.animation_data)}
+    return len(driven) == sum(len(values_of(plan.layers[place])) for place in enclosing_layers(plan))
 
 
 def plan_digest(plan: Plan) -> str:

@@ -73,8 +73,11 @@ class Preset:
 
 
 def preset_names(folder: Path = PRESET_FOLDER) -> tuple[str, ...]:
-    """Return the names of all presets in a folder, in alphabetical order."""
-    return tuple(sorted(path.stem for path in folder.glob("*.toml")))
+    """Return the names of all presets in a folder, in alphabetical order.
+
+    Hidden files are none: a program that was killed may have left them half written.
+    """
+    return tuple(sorted(path.stem for path in folder.glob("*.toml") if not path.name.startswith(".")))
 
 
 def all_presets(folder: Path = PRESET_FOLDER) -> tuple[Preset, ...]:
@@ -105,7 +108,7 @@ def load_preset(key: str, folder: Path = PRESET_FOLDER) -> Preset:
         check_keywords(parameters)
     except KeyError as error:
         raise ParameterError(f"preset file {path}: {error} is missing") from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, ParameterError) as error:
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError, ParameterError) as error:
         raise ParameterError(f"preset file {path}: {error}") from None
     return Preset(key, name, group, tuple(tags), description, source, parameters)
 

@@ -10,6 +10,7 @@ from .material_version import MATERIAL_VERSION, find_group
 from .names import VERSION_PROPERTY
 from .osl import COORDINATE_FILE, MASK_FILE, SHADER_FILE, make_script
 from .sockets import NODE_WIDTH, add_sockets
+from .wholeness import mark_whole
 from .wiring import add_nodes
 
 
@@ -30,4 +31,5 @@ def ensure_group() -> bpy.types.NodeTree:
     tree.default_group_node_width = NODE_WIDTH
     add_sockets(tree)
     add_nodes(tree, scripts)
+    mark_whole(tree)
     return tree

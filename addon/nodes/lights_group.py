@@ -7,6 +7,7 @@ import bpy
 from .material_version import MATERIAL_VERSION
 from .names import LIGHTS_NAME, LIGHTS_VERSION_PROPERTY
 from .shader_nodes import SOCKET_TYPES
+from .wholeness import mark_whole
 
 LIGHT_OUTPUTS = {"Kind": "FLOAT", "Total": "FLOAT"} | dict.fromkeys(
     ("Centre", "Axis", "EdgeX", "EdgeY", "Shape", "Strength", "Carried"), "VECTOR"
@@ -46,4 +47,5 @@ def ensure_lights() -> bpy.types.NodeTree:
         for name, kind in _LIGHTS_OUTPUTS.items():
             tree.interface.new_socket(name, in_out="OUTPUT", socket_type=SOCKET_TYPES[kind])
         tree.nodes.new("NodeGroupOutput")
+        mark_whole(tree)
     return tree

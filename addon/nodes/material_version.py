@@ -16,6 +16,7 @@ from .names import (
     VERSION_PROPERTY,
 )
 from .sockets import input_types
+from .wholeness import is_whole
 
 MATERIAL_VERSION = 3
 """Of the group and of all that stands in a file with it. A release that changes any of it counts on."""
@@ -44,7 +45,9 @@ def group_version(tree: bpy.types.NodeTree | None) -> int | None:
 
 
 def _is_whole(tree: bpy.types.NodeTree) -> bool:
-    """Return whether a group has the nodes and sockets that Python looks for in it, and its shaders."""
+    """Return whether a group has the nodes and sockets that Python looks for in it, its shaders, and all else of it."""
+    if not is_whole(tree):
+        return False
     kinds = {
         SHADER_NODE: "SCRIPT",
         COORDINATE_NODE: "SCRIPT",

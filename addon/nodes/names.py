@@ -57,6 +57,9 @@ DISPERSER_NODE = "Cycles Dispersion"
 
 VERSION_PROPERTY = "nd_version"
 
+WHOLE = "nd_whole"
+"""Custom property of a group: how much it held when it was made."""
+
 SOURCE_HASH = "nd_source"
 """What groups of version 1 carry instead of a number."""
 

@@ -47,16 +47,23 @@ def make_script(name: str, source: str) -> Script:
 def compiled(source: str) -> str:
     """Return the bytecode of an OSL shader.
 
-    Raise :class:`~nested_dielectric.nodes.compatibility.UnsupportedError` when this Blender compiles no OSL.
+    Raise :class:`~nested_dielectric.nodes.compatibility.UnsupportedError` when this Blender compiles no OSL, or the folder of
+    temporary files takes none.
     """
     import _cycles
 
-    with tempfile.TemporaryDirectory() as folder:
-        source_path, bytecode_path = Path(folder, "shader.osl"), Path(folder, "shader.oso")
-        source_path.write_text(source, encoding="utf-8")
-        if not (_cycles.with_osl and _cycles.osl_compile(str(source_path), str(bytecode_path))):
-            raise UnsupportedError("this Blender compiles no OSL; use the build from blender.org or the bpy wheel")
-        return bytecode_path.read_text(encoding="utf-8")
+    if not _cycles.with_osl:
+        raise UnsupportedError("this Blender compiles no OSL; use the build from blender.org or the bpy wheel")
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            source_path, bytecode_path = Path(folder, "shader.osl"), Path(folder, "shader.oso")
+            source_path.write_text(source, encoding="utf-8")
+            if _cycles.osl_compile(str(source_path), str(bytecode_path)):
+                return bytecode_path.read_text(encoding="utf-8")
+            reason = f"nothing came of it in {folder}; is the disk full?"
+    except OSError as error:
+        reason = f"{error.strerror}; make room in {error.filename or 'the folder of temporary files'}"
+    raise UnsupportedError(f"the shader was not compiled: {reason}")
 
 
 def add_script(

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import bpy
 
 from ..model.parameter import GROUP_NAME
-from ..model.parameters import NEIGHBOUR_PARAMETERS
+from ..model.parameters import NEIGHBOUR_PARAMETERS, SETTINGS
 from .animation import is_animated
 from .links import Place, reaches_output
 from .material_version import DAMAGED, group_version, is_dielectric
@@ -20,9 +20,15 @@ PREPARE = "press Prepare Scene"
 def node_problems(material: bpy.types.Material) -> Iterator[tuple[str, str]]:
     """Yield what is wrong with the nested dielectric in a material's nodes, after "has ", and the remedies."""
     tree = material.node_tree
+    where = f"material {material.name!r}"
+    if has_lost_group(material):
+        yield (
+            f"a node {GROUP_NAME!r} in {where} whose group was deleted, and the values with it",
+            "undo that, or assign a preset again",
+        )
+        return
     if tree is None or not _holds_dielectric(tree, set()):
         return
-    where = f"material {material.name!r}"
     prepare = PREPARE if material.library is None else f"{PREPARE} in {material.library.filepath!r}"
     places = dielectric_places(material)
     unreadable = _place_problem(tree, places, where, prepare)
@@ -31,6 +37,14 @@ def node_problems(material: bpy.types.Material) -> Iterator[tuple[str, str]]:
         return
     yield from _value_problems(places[0], tree.nodes[GROUP_NAME], where, prepare)
     yield from _output_problems(material, places[0], where, prepare)
+
+
+def has_lost_group(material: bpy.types.Material) -> bool:
+    """Return whether the group of a nested dielectric was deleted from the file: an empty node and settings are left."""
+    node = None if material.node_tree is None else material.node_tree.nodes.get(GROUP_NAME)
+    if node is None or node.bl_idname != "ShaderNodeGroup" or node.node_tree is not None:
+        return False
+    return any(setting.keyword in material for setting in SETTINGS)
 
 
 def _place_problem(tree: bpy.types.NodeTree, places: list[Place], where: str, prepare: str) -> tuple[str, str] | None:

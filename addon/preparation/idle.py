@@ -7,6 +7,7 @@ import bpy
 from ..analysis.surroundings import is_invalid
 from ..cutting import views
 from . import windows
+from .guard import guarded
 from .upkeep import (
     analyse_scene,
     analysed_scenes,
@@ -36,6 +37,7 @@ def is_update_scheduled() -> bool:
     return bpy.app.timers.is_registered(update_idle_scenes)
 
 
+@guarded("while changed scenes were analysed")
 def update_idle_scenes() -> float | None:
     """Analyse and cut what has changed in windows, or return the seconds to wait before another call."""
     if windows.is_at_work():
@@ -53,12 +55,14 @@ def update_idle_scenes() -> float | None:
     return None
 
 
+@guarded("while a viewport was drawn", writes=False)
 def schedule_views() -> None:
     """Let what viewports show be looked at soon after one is drawn."""
     if not bpy.app.timers.is_registered(update_views):
         bpy.app.timers.register(update_views, first_interval=VIEW_SECONDS)
 
 
+@guarded("while viewports were looked at")
 def update_views() -> float | None:
     """Let viewports show cut surfaces or the artist's objects, or return the seconds to wait before another call."""
     if windows.is_rendering():

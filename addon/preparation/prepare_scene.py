@@ -27,6 +27,7 @@ from ..scene.lights import update_lights
 from ..scene.material_spectra import refresh_spectrum
 from ..scene.media import all_objects, dispersing_materials, media
 from ..scene.settings import Changed
+from .guard import forget_faults
 from .live import analyse, update_cut
 from .report import Report, forget_report, keep_report, last_report
 from .required_settings import end_random_time, ensure_osl, ensure_random_time
@@ -95,6 +96,7 @@ def prepare(scene: bpy.types.Scene, cut: bool | None = None, backend: str | None
     :raises ParameterError: for another backend.
     """
     require_blender()
+    forget_faults()
     if backend is not None:
         set_backend(scene, backend)
     if cut is not None and cut != is_set_to_cut(scene):

@@ -10,10 +10,12 @@ from ..nodes.identity import NO_SCENE, known_number
 from ..nodes.script_mending import mend_scripts
 from ..scene.lights import update_lights
 from . import upkeep, windows
+from .guard import guarded
 from .update_handlers import analyse_after_frame_change
 
 
 @bpy.app.handlers.persistent
+@guarded("before a render")
 def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
     """Make sure that the media know what surrounds them now, and the lights that their lobes carry.
 
@@ -37,6 +39,7 @@ def analyse_before_render(scene: bpy.types.Scene, *_: object) -> None:
 
 
 @bpy.app.handlers.persistent
+@guarded("before a render")
 def move_frame_handler_last(*_: object) -> None:
     """Let the handler of frames see each after all scripts have changed it."""
     handlers = bpy.app.handlers.frame_change_post

@@ -12,9 +12,11 @@ from ..analysis.validity import is_analysed
 from ..cutting import cut_scene, views
 from ..scene.scripts import frame_scripts
 from . import idle, upkeep, windows
+from .guard import guarded
 
 
 @bpy.app.handlers.persistent
+@guarded("on a new frame")
 def analyse_after_frame_change(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph | None = None) -> None:
     """Follow what scripts change on a frame, of which no update tells.
 
@@ -36,6 +38,7 @@ def analyse_after_frame_change(scene: bpy.types.Scene, depsgraph: bpy.types.Deps
 
 
 @bpy.app.handlers.persistent
+@guarded("before a change")
 def freeze_cut_before_update(scene: bpy.types.Scene, *_: object) -> None:
     """Cut nothing anew for viewports while changes follow on each other, as the mouse drags: to cut may take seconds."""
     if (
@@ -54,6 +57,7 @@ def freeze_cut_before_update(scene: bpy.types.Scene, *_: object) -> None:
 
 
 @bpy.app.handlers.persistent
+@guarded("after a change")
 def analyse_after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     """Analyse what has changed at once, or in a window let media ask until nobody works."""
     changes.count(depsgraph)

@@ -21,6 +21,7 @@ from ..nodes.material_version import MATERIAL_VERSION
 from ..nodes.names import LIGHTS_VERSION_PROPERTY
 from ..nodes.osl import LIGHT_FILE, add_script, make_script
 from ..nodes.shader_nodes import math_node, view_layer_attribute
+from ..nodes.wholeness import is_whole, mark_whole
 
 RAYS, LOBE, NOTHING = "RAYS", "LOBE", "NOTHING"
 
@@ -174,6 +175,7 @@ def _list_lights() -> bool:
         tree.links.new(emission.outputs[0], outputs.inputs[EMITTER_OUTPUT])
         emission.location = (260.0 * (len(wanted) - 1), 300.0)
         outputs.location = (260.0 * len(wanted), 0.0)
+    mark_whole(tree)
     return True
 
 
@@ -182,6 +184,7 @@ def _holds(tree: bpy.types.NodeTree, wanted: list[tuple[int, bpy.types.Object]])
     drivers = tree.animation_data.drivers if tree.animation_data else ()
     return (
         tree.get(LIGHTS_VERSION_PROPERTY) == MATERIAL_VERSION
+        and is_whole(tree)
         and _listed() == wanted
         and len(drivers) == sum(_driver_count(light) for _, light in wanted)
         and all(

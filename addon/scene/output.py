@@ -60,6 +60,8 @@ def save_blend(path: Path | str) -> Path:
     :raises WriteError: if it cannot be written, or not whole.
     """
     target = absolute(path)
+    if os.sep == "/" and "\\" in str(target.parent):
+        raise WriteError(f"{target.parent}: has a backslash, which Blender reads as a slash; name another folder")
     with replacing(path) as draft:
         try:
             bpy.ops.wm.save_as_mainfile(filepath=str(draft), copy=True)

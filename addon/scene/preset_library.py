@@ -101,28 +101,41 @@ _read: tuple[tuple, Catalogue] | None = None
 
 
 def _stamp(folder: Path) -> tuple:
+    return folder, *sorted((path.name, _moment(path)) for path in folder.glob("*.toml"))
+
+
+def _moment(path: Path) -> int:
+    """Return when a file was written, 0 where a link leads nowhere or nobody may know."""
     try:
-        return folder, *sorted((path.name, path.stat().st_mtime_ns) for path in folder.glob("*.toml"))
+        return path.stat().st_mtime_ns
     except OSError:
-        return folder, None
+        return 0
 
 
 def _catalogue() -> Catalogue:
-    found = {key: presets.load_preset(key) for key in presets.preset_names()}
-    own, problems = {}, []
+    found, problems = _read_all(PRESET_FOLDER, "install the extension again")
     folder = user_folder()
-    for key in presets.preset_names(folder):
-        try:
-            preset = presets.load_preset(key, folder)
-        except ParameterError as error:
-            problems.append(f"{error}; correct the file or delete it")
-            continue
+    readable, unreadable = _read_all(folder, "correct the file or delete it")
+    problems += unreadable
+    own = {}
+    for key, preset in readable.items():
         if _has(found.values(), key, preset.name):
             remedy = "rename the file and its preset"
             problems.append(f"preset file {folder / key}.toml: {preset.name} is built in; {remedy}")
         else:
             own[key] = preset
     return Catalogue(dict(sorted((found | own).items())), frozenset(own), tuple(problems))
+
+
+def _read_all(folder: Path, remedy: str) -> tuple[dict[str, Preset], list[str]]:
+    """Return the presets of a folder by their keys, and what is wrong with its other files."""
+    found, problems = {}, []
+    for key in presets.preset_names(folder):
+        try:
+            found[key] = presets.load_preset(key, folder)
+        except ParameterError as error:
+            problems.append(f"{error}; {remedy}")
+    return found, problems
 
 
 def is_built_in(key: str, name: str) -> bool:

@@ -12,6 +12,8 @@ from ..checking.material_checks import material_problems
 from ..checking.version_checks import version_problems
 from ..nodes.lookups import caching_nodes
 from ..nodes.material_version import group_version
+from ..nodes.problems import has_lost_group
+from ..preparation.guard import guarded
 from ..scene.materials import dielectric_node, may_disperse
 from ..scene.media import all_objects
 from ..scene.priorities import Row, priority_rows
@@ -86,7 +88,8 @@ def listed_media(scene: bpy.types.Scene) -> Listed:
 
 @caching_nodes()
 def _look(scene: bpy.types.Scene) -> Listed:
-    if all(group_version(tree) is None for tree in bpy.data.node_groups):
+    lost = any(map(has_lost_group, bpy.data.materials))
+    if not lost and all(group_version(tree) is None for tree in bpy.data.node_groups):
         return Listed()
     rows = priority_rows(all_objects(scene))
     places = {obj.session_uid: index for index, row in enumerate(rows) for obj in row.objects}
@@ -130,6 +133,7 @@ def open_or_close(material: int) -> None:
 
 
 @bpy.app.handlers.persistent
+@guarded("after a change", writes=False)
 def forget_media(_: bpy.types.Scene = None, depsgraph: bpy.types.Depsgraph = None) -> None:
     """Forget the media, so that they are looked for again.
 

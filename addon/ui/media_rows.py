@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..preparation.guard import guarded
 from .media_list import Line, listed_lines, listed_media
 from .selecting import select_only
 
@@ -71,6 +72,7 @@ def make_places(scene: bpy.types.Scene) -> None:
         bpy.app.timers.register(_make_wanted)
 
 
+@guarded("while media were listed", writes=False)
 def _make_wanted() -> None:
     manager = bpy.context.window_manager
     places = manager.nested_dielectric_places

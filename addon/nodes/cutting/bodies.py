@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 import bpy
 
+from ..stored import stored_list
+from ..wholeness import is_whole
 from .builder import GEOMETRY, Builder, new_tree
 from .names import ATTRIBUTES, BODY, BODY_GROUP, BODY_INPUT, NORMAL, OWN_INPUT
 from .plan import Plan
@@ -45,7 +47,7 @@ def _ensure_body_tree(attributes: tuple[str, ...]) -> bpy.types.NodeTree:
     """
     marked = list(attributes) or [""]
     for tree in bpy.data.node_groups:
-        if tree.library is None and ATTRIBUTES in tree and list(tree[ATTRIBUTES]) == marked:
+        if tree.library is None and is_whole(tree) and stored_list(tree, ATTRIBUTES) == marked:
             return tree
     tree = new_tree(
         BODY_GROUP,

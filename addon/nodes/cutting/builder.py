@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
+from ..wholeness import is_whole, mark_whole
 from .names import BOOLEAN_GROUP
 
 GEOMETRY = {"Geometry": "NodeSocketGeometry"}
@@ -42,10 +43,11 @@ class Builder:
             socket.default_value = source
 
     def returns(self, **sources) -> None:
-        """Link what the tree returns."""
+        """Link what the tree returns, which is whole then."""
         output = self.tree.nodes.new("NodeGroupOutput")
         for name, source in sources.items():
             self.put(output.inputs[name.replace("_", " ")], source)
+        mark_whole(self.tree)
 
     def joined(self, geometries: Sequence[bpy.types.NodeSocket]) -> bpy.types.NodeSocket | None:
         """Join geometries, the materials of the first one first; return None without any."""
@@ -183,9 +185,9 @@ def new_tree(name: str, inputs: dict[str, str], outputs: dict[str, str], descrip
 
 
 def find_tree(name: str) -> bpy.types.NodeTree | None:
-    """Return this file's own group of a name, or None if there is none."""
-    tree = bpy.data.node_groups.get(name)
-    return tree if tree is not None and tree.library is None and tree.bl_idname == "GeometryNodeTree" else None
+    """Return this file's own group of a name, whatever number follows it, or None if there is none that is whole."""
+    found = (tree for tree in bpy.data.node_groups if tree.name == name or tree.name.rpartition(".")[0] == name)
+    return next((tree for tree in found if tree.library is None and is_whole(tree)), None)
 
 
 def ensure_boolean_tree(operation: str) -> bpy.types.NodeTree:

@@ -1,8 +1,10 @@
-"""The operator that brings materials to this version of the extension."""
+"""Operators that concern the extension itself: bringing materials to its version, and reporting its errors."""
 
 import bpy
 
 from ...nodes.compatibility import UnsupportedError
+from ...nodes.material_version import MATERIAL_VERSION
+from ...preparation.guard import faults
 from ...preparation.versions import outdated_materials, update_materials
 from ..polls import supported
 
@@ -36,4 +38,25 @@ class UpdateMaterials(bpy.types.Operator):
         return {"FINISHED"}
 
 
-CLASSES = (UpdateMaterials,)
+class CopyFaults(bpy.types.Operator):
+    """Copy what a report of an error needs."""
+
+    bl_idname = "nested_dielectric.copy_faults"
+    bl_label = "Copy Details"
+    bl_description = "Copy the details of the error to the clipboard, for a report"
+    bl_options = {"INTERNAL"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not faults():
+            cls.poll_message_set("There was no error since the file was opened or the scene was prepared")
+        return bool(faults())
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        versions = f"Blender {bpy.app.version_string}, materials of version {MATERIAL_VERSION}"
+        context.window_manager.clipboard = "\n\n".join((versions, *(fault.details for fault in faults())))
+        self.report({"INFO"}, "The details are in the clipboard")
+        return {"FINISHED"}
+
+
+CLASSES = (UpdateMaterials, CopyFaults)

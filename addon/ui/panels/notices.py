@@ -12,18 +12,22 @@ import bpy
 from ...cutting.backends import last_choice
 from ...nodes.compatibility import blender_problem
 from ...nodes.render_settings import achromatic_reason, settings_problem
+from ...preparation.guard import faults
 from ...scene.debug_views import debug_notice
 from ..drawing import draw_alert
 from ..media_list import listed_media
 from ..operators.debug_operators import ShowDebugView
 from ..operators.preparation_operators import Prepare
+from ..operators.update_operators import CopyFaults
 
 MOST_CHARACTERS = 100
 """Of a notice that has one line."""
 
 
 def render_problem(scene: bpy.types.Scene) -> str | None:
-    """Return why a render would not show the media of a scene, or None if it would, or there are none."""
+    """Return why a render would not show the media of a scene, or what went wrong; None if it would, or has none."""
+    if faults():
+        return str(faults()[0])
     listed = listed_media(scene)
     if not listed.rows and not listed.problems:
         return None
@@ -47,11 +51,18 @@ def _asking(scene: bpy.types.Scene) -> str | None:
     return f"{name!r} {reason}, which Cycles' own nodes cannot; mend it, or press Prepare Scene"
 
 
+def draw_fault_button(layout: bpy.types.UILayout) -> None:
+    """Draw the button that copies what a report of an error needs, where there was one."""
+    if faults():
+        layout.operator(CopyFaults.bl_idname, icon="COPYDOWN")
+
+
 def draw_in_properties(self: bpy.types.Panel, context: bpy.types.Context) -> None:
     """Draw the notice in Render properties, in full, with the button that mends it."""
     problem = render_problem(context.scene)
     if problem:
         draw_alert(self.layout, context, problem)
+        draw_fault_button(self.layout)
         self.layout.operator(Prepare.bl_idname, icon="CHECKMARK")
     draw_debug_notice(self.layout, context)
 

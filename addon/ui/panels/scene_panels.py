@@ -19,7 +19,7 @@ from ..operators.preparation_operators import ClearAnalysis
 from ..operators.update_operators import UpdateMaterials
 from ..presets.preset_menus import draw_presets
 from .media_list_panel import draw_media, draw_priority
-from .notices import draw_debug_notice, render_problem
+from .notices import draw_debug_notice, draw_fault_button, render_problem
 from .preparation_panel import draw_preparation
 from .rendering_panel import draw_backend, draw_cut
 
@@ -42,6 +42,7 @@ def draw_problem(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
     note = blender_note()
     if problem:
         draw_alert(layout, context, problem)
+        draw_fault_button(layout)
     elif not listed_media(context.scene).rows:
         wrong = blender_problem()
         text = (

@@ -7,6 +7,7 @@ from math import isclose
 import bpy
 
 from ...model.parameter import ParameterError
+from ...preparation.guard import guarded
 from ...scene.materials import dielectric_node
 from ...scene.preset_materials import fit_depth, is_preset, preset_of
 from ...scene.preset_values import DEPTH, measured_depth
@@ -21,6 +22,7 @@ _appended: set[int] = set()
 
 
 @bpy.app.handlers.persistent
+@guarded("while data were appended", writes=False)
 def note_before(*_: object) -> None:
     """Note what the file holds before an append: what an append lists may be gone when other handlers have seen it."""
     _before.clear()
@@ -28,6 +30,7 @@ def note_before(*_: object) -> None:
 
 
 @bpy.app.handlers.persistent
+@guarded("while data were appended", writes=False)
 def note_appended(*_: object) -> None:
     """Note materials that were appended alone, to look at them once Blender has given them away.
 
@@ -42,6 +45,7 @@ def note_appended(*_: object) -> None:
         bpy.app.timers.register(fit_appended)
 
 
+@guarded("after a material was appended", writes=False)
 def fit_appended() -> None:
     """Let the colour of appended presets be that of the objects that have got them, as where a preset is assigned."""
     found = [material for material in bpy.data.materials if material.session_uid in _appended]

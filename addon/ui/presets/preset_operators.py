@@ -3,6 +3,7 @@
 import bpy
 
 from ...model.parameter import ParameterError
+from ...nodes.compatibility import UnsupportedError
 from ...scene import media
 from ...scene.preset_library import catalogue, load_preset
 from ...scene.preset_materials import edited_material, fit_depth, preset_material, preset_of
@@ -79,7 +80,7 @@ class AssignPreset(bpy.types.Operator):
             material = preset_material(loaded, objects, fit=self.depth == FIT, use_edited=self.material == EDITED)
             for obj in objects:
                 media.assign(obj, material)
-        except ParameterError as error:
+        except (ParameterError, UnsupportedError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         self.report({"INFO"}, f"{material.name} assigned to {', '.join(obj.name for obj in objects)}")
