@@ -15,6 +15,11 @@ FOLDER = Path(__file__).parent
 sys.path.insert(0, str(FOLDER / "helpers"))
 
 
+def pytest_configure(config):
+    """Name the mark of what every run takes of the stress suite."""
+    config.addinivalue_line("markers", "always: of the stress suite, in every run")
+
+
 def pytest_collection_modifyitems(items):
     """Mark tests by their folders; what takes no time comes first."""
     for item in items:

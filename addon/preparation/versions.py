@@ -16,6 +16,7 @@ from ..nodes.closures import arm_dispersion
 from ..nodes.compatibility import require_blender
 from ..nodes.group import ensure_group
 from ..nodes.material_version import DAMAGED, MATERIAL_VERSION, find_group, group_version
+from ..nodes.names import WHOLE
 from ..nodes.script_mending import mend_scripts
 from ..scene.lights import refresh_lights
 from ..scene.new_materials import show_colours_through
@@ -119,10 +120,11 @@ def _is_outdated(tree: bpy.types.NodeTree, current: bpy.types.NodeTree | None) -
 
 
 def _shader_trees() -> Iterator[bpy.types.NodeTree]:
-    """Yield the trees of the file's own materials, and its shader groups but the extension's."""
+    """Yield the trees of the file's own materials, and its shader groups but the extension's and the parts of those."""
     for material in bpy.data.materials:
         if material.library is None and material.node_tree is not None:
             yield material.node_tree
     for tree in bpy.data.node_groups:
-        if tree.library is None and tree.bl_idname == "ShaderNodeTree" and group_version(tree) is None:
+        is_artists = tree.library is None and WHOLE not in tree and group_version(tree) is None
+        if is_artists and tree.bl_idname == "ShaderNodeTree":
             yield tree
