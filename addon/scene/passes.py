@@ -12,7 +12,7 @@ from pathlib import PurePath
 import bpy
 
 from ..nodes.names import DEBUG_VIEW
-from .media import media
+from .media import is_cut_surface, media
 
 LIGHT_GROUP = "Media"
 GROUP_NAME = "Nested Dielectric Passes"
@@ -87,7 +87,8 @@ def _put_in_light_group(scene: bpy.types.Scene) -> list[str]:
         else:
             obj.lightgroup = LIGHT_GROUP
             changes.append(f"Light Group of {obj.name}: {LIGHT_GROUP}")
-    others = [obj for obj in scene.objects if obj.lightgroup == LIGHT_GROUP and obj not in objects]
+    ours = {*objects, *filter(is_cut_surface, scene.objects)}
+    others = [obj for obj in scene.objects if obj.lightgroup == LIGHT_GROUP and obj not in ours]
     if scene.world is not None and scene.world.lightgroup == LIGHT_GROUP:
         others.append(scene.world)
     for other in others:
