@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import bpy
 
 from ..geometry.contacts import PairCache
+from ..nodes.identity import forget_gone_scenes
 from . import solid_cache
 from .findings import Found
 from .snapshot import SceneSnapshot
@@ -37,8 +38,7 @@ def analysis_of(scene: bpy.types.Scene) -> SceneAnalysis:
 
 def forget_unused() -> None:
     """Forget scenes that are gone, and solids that no snapshot holds."""
-    for gone in _analyses.keys() - {scene.session_uid for scene in bpy.data.scenes}:
-        del _analyses[gone]
+    forget_gone_scenes(_analyses)
     latest = (known.snapshot for known in _analyses.values() if known.snapshot)
     solid_cache.keep_only(instance.body.solid for snapshot in latest for instance in snapshot.bodies)
 

@@ -20,6 +20,7 @@ from ..analysis import findings, stability, surroundings
 from ..model.dispersion import abbe_deviation
 from ..model.parameters import BY_KEYWORD
 from ..nodes.compatibility import NATIVE_DISPERSION_VERSION
+from ..nodes.identity import forget_gone_scenes
 from ..nodes.lookups import caching_nodes
 from ..nodes.names import NATIVE_SOCKET
 from ..nodes.places import is_plugged
@@ -108,6 +109,7 @@ def choose(scene: bpy.types.Scene, scripted: bool = False) -> BackendChoice:
         native, tuple((material.name, reason) for material, reason in reasons.items()), notes, asking
     )
     _last[scene.session_uid] = chosen
+    forget_gone_scenes(_last)
     return chosen
 
 

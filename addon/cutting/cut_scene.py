@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..nodes.cutting.plan import Plan
+from ..nodes.identity import forget_gone_scenes
 from ..nodes.names import VERSION_PROPERTY
 from ..nodes.render_with import is_native
 from ..scene.media import CUT_SETTING
@@ -49,6 +50,7 @@ def cut_surfaces(scene: bpy.types.Scene, scripted: bool = False) -> CutReport:
     delete_outdated_bake(scene, plan)
     unhide_orphans()
     _last[scene.session_uid] = found, _settings(scene), plan
+    forget_gone_scenes(_last)
     return found
 
 

@@ -8,6 +8,7 @@ is a constant to it) with the one they carry, without the extension too.
 from __future__ import annotations
 
 import secrets
+from typing import Any
 
 import bpy
 
@@ -25,6 +26,12 @@ def known_number(scene: bpy.types.Scene) -> int:
     """Return a scene's number, or :data:`NO_SCENE`."""
     number = scene.get(SCENE_PROPERTY)
     return number if type(number) is int and NO_SCENE < number < NUMBERS else NO_SCENE
+
+
+def forget_gone_scenes(known: dict[int, Any]) -> None:
+    """Remove scenes that are gone from what a session keeps by the session's numbers of its scenes."""
+    for gone in known.keys() - {scene.session_uid for scene in bpy.data.scenes}:
+        del known[gone]
 
 
 def scene_number(scene: bpy.types.Scene) -> int:

@@ -128,7 +128,8 @@ def is_open(row: Row) -> bool:
 
 
 def open_or_close(material: int) -> None:
-    """Show the objects of a material, by its number in this session, or hide them."""
+    """Show the objects of a material, by its number in this session, or hide them; forget materials that are gone."""
+    _opened.intersection_update(each.session_uid for each in bpy.data.materials)
     _opened.symmetric_difference_update((material,))
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..nodes.identity import forget_gone_scenes
 from ..preparation.guard import guarded
 from .media_list import Line, listed_lines, listed_media
 from .selecting import select_only
@@ -58,6 +59,7 @@ def set_active(scene: bpy.types.Scene, index: int) -> None:
     active = layer.objects.active
     if isinstance(chosen, bpy.types.Material):
         _chosen[scene.session_uid] = chosen.session_uid, 0 if active is None else active.session_uid
+        forget_gone_scenes(_chosen)
         return
     _chosen.pop(scene.session_uid, None)
     if active is None or active.mode == "OBJECT":
