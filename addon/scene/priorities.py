@@ -6,6 +6,7 @@ where none is free, room is made by a step of its own.
 
 from __future__ import annotations
 
+import itertools
 from bisect import bisect_left, bisect_right
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
@@ -17,7 +18,7 @@ from ..nodes.animation import curves, is_animated
 from ..nodes.lookups import caching_nodes
 from ..nodes.mending import repair_nodes
 from .materials import dielectric_node, medium_material, parameter_socket
-from .media import all_objects, get_priority, material_priority, own_priority, set_priority
+from .media import all_objects, get_priority, is_cut_surface, material_priority, own_priority, set_priority
 
 Owner = bpy.types.Material | bpy.types.Object
 """Whose number it is."""
@@ -181,7 +182,7 @@ def space_out() -> tuple[list[str], list[str]]:
         for material in bpy.data.materials:
             if dielectric_node(material) is not None:
                 levels.setdefault(material_priority(material), []).append(material)
-        for obj in bpy.data.objects:
+        for obj in itertools.filterfalse(is_cut_surface, bpy.data.objects):
             if own_priority(obj) is not None and medium_material(obj) is not None:
                 levels.setdefault(own_priority(obj), []).append(obj)
     reasons = {owner: hindrance(owner) for owners in levels.values() for owner in owners}

@@ -18,8 +18,8 @@ SETTINGS = tuple(
 
 def is_seen(obj: bpy.types.Object, setting: str) -> bool:
     """Return whether an artist lets rays meet an object, by the name of a setting of Ray Visibility."""
-    seen = obj.get(HIDDEN_BY_CUT)
-    return setting in seen.split() if isinstance(seen, str) else getattr(obj, setting)
+    kept = _kept(obj)
+    return getattr(obj, setting) if kept is None else setting in kept
 
 
 def is_seen_by_all(obj: bpy.types.Object) -> bool:
@@ -34,7 +34,7 @@ def may_hide(obj: bpy.types.Object) -> bool:
 
 def is_hidden(obj: bpy.types.Object) -> bool:
     """Return whether no ray meets an object because a cut surface stands for it in viewports."""
-    return isinstance(obj.get(HIDDEN_BY_CUT), str)
+    return _kept(obj) is not None
 
 
 def hide(obj: bpy.types.Object) -> None:
@@ -46,10 +46,23 @@ def hide(obj: bpy.types.Object) -> None:
 
 def show(obj: bpy.types.Object) -> None:
     """Let those rays meet an object again that its artist lets."""
-    if is_hidden(obj):
-        seen = obj[HIDDEN_BY_CUT].split()
+    kept = _kept(obj)
+    if kept is not None:
         _keep(obj, True)
-        _set(obj, seen)
+        _set(obj, kept)
+
+
+def _kept(obj: bpy.types.Object) -> tuple[str, ...] | None:
+    """Return by which rays an artist lets an object be met, as it was kept while none meets it; None while rays do.
+
+    If others have damaged that, and no ray meets the object, it is to be met by all.
+    """
+    value = obj.get(HIDDEN_BY_CUT)
+    if value is None or value is True:
+        return None
+    if isinstance(value, str) and all(word.startswith("visible_") for word in value.split()):
+        return tuple(value.split())
+    return None if any(getattr(obj, setting) for setting in SETTINGS) else SETTINGS
 
 
 def _keep(obj: bpy.types.Object, value: str | bool) -> None:
@@ -58,7 +71,7 @@ def _keep(obj: bpy.types.Object, value: str | bool) -> None:
         obj[HIDDEN_BY_CUT] = value
 
 
-def _set(obj: bpy.types.Object, seen: tuple[str, ...] | list[str]) -> None:
+def _set(obj: bpy.types.Object, seen: tuple[str, ...]) -> None:
     for setting in SETTINGS:
         if getattr(obj, setting) != (setting in seen):
             setattr(obj, setting, setting in seen)

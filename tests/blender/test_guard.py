@@ -1,6 +1,7 @@
 """An error in a handler or a timer reaches the artist's panels and no console, and leaves media that ask."""
 
 import sys
+from types import SimpleNamespace
 
 import bpy
 import pytest
@@ -11,7 +12,7 @@ from nested_dielectric.analysis import surroundings
 from nested_dielectric.analysis.validity import validity_of
 from nested_dielectric.cutting import views
 from nested_dielectric.preparation import guard, idle, render_handlers, scripts
-from nested_dielectric.ui.panels import scene_panels
+from nested_dielectric.ui.panels import notices, scene_panels
 from nested_dielectric.ui.presets import dropped
 
 
@@ -112,6 +113,18 @@ def test_every_handler_and_timer_is_guarded(scene):
     assert len(ours) > 15
     timers = [idle.update_idle_scenes, idle.update_views, idle.schedule_views, dropped.fit_appended]
     assert [each for each in ours + timers if not hasattr(each, "__wrapped__")] == []
+
+
+def test_an_error_in_what_is_drawn_into_blenders_own_panels_is_told_in_it(scene, console, monkeypatch):
+    places = [getattr(bpy.types, name) for name, _ in notices.PLACES]
+    drawings = [each for place in places for each in place.draw._draw_funcs if each.__module__ == notices.__name__]
+    assert len(drawings) == len(places) and all(hasattr(each, "__wrapped__") for each in drawings)
+    monkeypatch.setattr(notices, "listed_media", fail)
+    for draw in drawings:
+        draw(SimpleNamespace(layout=None), bpy.context)
+    assert {fault.when for fault in guard.faults()} == {"while a panel was drawn"} and console == []
+    assert "an error while a panel was drawn" in notices.render_problem(scene)
+    guard.forget_faults()
 
 
 def test_errors_that_repeat_are_kept_once_and_few(console, capfd):

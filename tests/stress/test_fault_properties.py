@@ -15,6 +15,7 @@ from nested_dielectric.model.spectral_tables import spectral_table
 from nested_dielectric.nodes.material_version import find_group
 from nested_dielectric.nodes.spectral_tables import uses_table
 from nested_dielectric.preparation import live, prepare_scene, render_handlers
+from nested_dielectric.scene import ray_visibility
 from nested_dielectric.scene.lights import light_carriers
 from nested_dielectric.ui import media_list
 
@@ -168,6 +169,23 @@ def test_whatever_stands_in_a_stored_property_raises_nothing_and_is_mended(file)
             damage(file, owner, value, chance)
         except Exception as error:
             raise AssertionError(f"{owner} holds {value}") from error
+
+
+@pytest.mark.always
+@pytest.mark.parametrize("value", ["junk", 7, 1.5, [1, 2], {"a": 1}, False])
+def test_rays_meet_a_medium_again_although_what_its_artist_has_set_was_damaged(value):
+    new_scene()
+    ball = add_sphere("Ball", 1.0, segments=8)
+    ball.visible_shadow = False
+    ball["nd_cut"] = value
+    ray_visibility.show(ball)
+    assert ball.visible_camera and not ball.visible_shadow
+    del ball["nd_cut"]
+    ray_visibility.hide(ball)
+    assert not ball.visible_camera
+    ball["nd_cut"] = value
+    ray_visibility.show(ball)
+    assert ball.visible_camera and not ray_visibility.is_hidden(ball)
 
 
 @pytest.mark.always
