@@ -12,7 +12,7 @@ BLENDER_EXTENSION = $(PYTHON) -c 'import sys, bpy; from bl_pkg.bl_extension_cli 
 # Small renders mostly wait for one thread that compiles shaders, so two files at a time take half as long.
 PYTEST_OPTIONS := -n 2 --dist loadfile --no-loadscope-reorder
 
-.PHONY: check demo presets assets docs test test-quick test-lts bench bench-quick extension clean
+.PHONY: check demo presets assets docs test test-quick test-lts stress bench bench-quick extension clean
 
 demo: $(STAMP)
 	$(PYTHON) -m nested_dielectric demo
@@ -33,6 +33,12 @@ test-quick: $(STAMP)
 # What touches Blender, each claim on few inputs, on the long-term release, and files that cross between both.
 test-lts: $(STAMP) $(LTS_STAMP)
 	ND_OTHER_BLENDER=$(PYTHON) $(LTS_PYTHON) -m pytest $(PYTEST_OPTIONS) -m 'not pure and not again'
+
+# All of tests/stress, within an hour, and its tables and plots in benchmarks/.
+stress: $(STAMP)
+	rm -rf out/stress
+	$(PYTHON) -m pytest $(PYTEST_OPTIONS) --dist load --stress tests/stress; status=$$?; \
+	  $(PYTHON) benchmarks/stress.py && exit $$status
 
 # The files of presets, from the tables and formulae in presets/build.
 presets: $(STAMP)

@@ -3,8 +3,11 @@
 - `unit`: no scene, and nothing of Blender but `mathutils`. Marked `quick`, and `pure` where the file does not import Blender.
 - `blender`: Blender's data, panels, files and processes, but no picture of Cycles. Marked `quick`.
 - `render`: whatever renders, here or in a process of its own.
+- `stress`: whether anything breaks, over many scenes and far out. A run takes those that are marked `always` alone, but with
+  `--stress` all.
 """
 
+import os
 import sys
 from pathlib import Path
 
@@ -15,19 +18,33 @@ FOLDER = Path(__file__).parent
 sys.path.insert(0, str(FOLDER / "helpers"))
 
 
+def pytest_addoption(parser):
+    """Let a run take the whole stress suite."""
+    parser.addoption("--stress", action="store_true", help="run all of tests/stress, which takes up to an hour")
+
+
 def pytest_configure(config):
-    """Name the mark of what every run takes of the stress suite."""
-    config.addinivalue_line("markers", "always: of the stress suite, in every run")
+    """Let modules of the stress suite know, which repeat more where all of it runs."""
+    if config.getoption("--stress"):
+        os.environ["ND_STRESS"] = "1"
 
 
-def pytest_collection_modifyitems(items):
-    """Mark tests by their folders; what takes no time comes first."""
+def pytest_collection_modifyitems(config, items):
+    """Mark tests by their folders; what takes no time comes first, and of the stress suite a part alone."""
     for item in items:
         room = item.path.relative_to(FOLDER).parts[0]
         if room in ("unit", "blender"):
             item.add_marker(pytest.mark.quick)
         if room == "unit" and not hasattr(item.module, "bpy"):
             item.add_marker(pytest.mark.pure)
+        if room == "stress":
+            item.add_marker(pytest.mark.stress)
+    if not config.getoption("--stress"):
+        left_out = [
+            item for item in items if item.get_closest_marker("stress") and not item.get_closest_marker("always")
+        ]
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in set(left_out)]
     items.sort(key=lambda item: item.get_closest_marker("quick") is None)
 
 

@@ -35,6 +35,12 @@ def mostly_again(values, first: int = 1) -> list:
     return values[:first] + [pytest.param(value, marks=pytest.mark.again) for value in values[first:]]
 
 
+def rarely(values, always=()) -> list:
+    """Parameters of which runs take a few alone, and the long-term release the first of these: `make stress` takes them all."""
+    marks = {value: [pytest.mark.always] + [pytest.mark.again] * (place > 0) for place, value in enumerate(always)}
+    return [pytest.param(value, marks=marks.get(value, [])) for value in values]
+
+
 @functools.cache
 def group_file() -> str:
     """Write the node group into a file, as it takes longer to make than most scenes do to render; return its path."""

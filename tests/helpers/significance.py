@@ -16,6 +16,9 @@ SUITE = 1e-2
 ASSERTIONS = 250
 """Assertions of a run that compare noise; a round number above how many there are."""
 
+STRESS_ASSERTIONS = 1500
+"""Comparisons of pictures in a run of the whole stress suite, whose false-alarm rate is :data:`SUITE`, too."""
+
 POWER = 0.99
 """Chance with which a difference is found that :func:`visible_difference` gives."""
 
@@ -37,6 +40,11 @@ def sidak(rate: float, count: int) -> float:
 def assertion_rate() -> float:
     """Return the false-alarm rate of one assertion."""
     return sidak(SUITE, ASSERTIONS)
+
+
+def stress_rate() -> float:
+    """Return the false-alarm rate of one comparison of the stress suite."""
+    return sidak(SUITE, STRESS_ASSERTIONS)
 
 
 def incomplete_beta(a: float, b: float, x: float) -> float:
@@ -165,6 +173,18 @@ def assert_same_picture(ours: np.ndarray, reference: np.ndarray, size: int = 16,
         f"A tile that differs by {np.median(seen):.2%} is found with {POWER:.0%}, in the noisiest by {seen.max():.2%}. "
         f"Pictures: {save_deviations(ours, reference, t, size)}"
     )
+
+
+def chance_of_same_picture(ours: np.ndarray, reference: np.ndarray, size: int = 16) -> float:
+    """Return the chance that two sets of batches differ as much as they do in any tile or in the mean, if both show the same.
+
+    For suites that state a rate of their own; the parameters are those of :func:`assert_same_picture`.
+    """
+    a, b = _tiles(ours, reference, size)
+    _, chance = deviations(a, b)
+    _, whole = deviations(a.mean(axis=(1, 2, 3)), b.mean(axis=(1, 2, 3)))
+    least = min(chance.min(), whole.min())
+    return float(-math.expm1((chance.size + 1) * math.log1p(-min(least, 1.0 - 1e-12))))
 
 
 def save_deviations(ours: np.ndarray, reference: np.ndarray, t: np.ndarray, size: int) -> str:
