@@ -17,6 +17,7 @@ from .checking.check import check
 from .checking.finding import Finding, to_json
 from .checking.kinds import Severity
 from .demo.iced_water import build_scene
+from .fixing.fix import fix_all
 from .importers.jf_reader import read_nodes
 from .importers.jf_translation import report, translate
 from .model.files import absolute, replacing
@@ -122,7 +123,7 @@ def run_check(options: argparse.Namespace) -> int:
     if options.fix and options.output is None:
         raise Failure("--fix needs a file to write: name it with --output")
     _open(options.file)
-    changes = {scene.name: [] for scene in bpy.data.scenes}
+    changes = {scene.name: list(fix_all(scene).changes) if options.fix else [] for scene in bpy.data.scenes}
     findings = {scene.name: check(scene) for scene in bpy.data.scenes}
     saved = save_blend(options.output) if options.fix else None
     if options.json:

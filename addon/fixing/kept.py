@@ -6,12 +6,12 @@ import bpy
 
 from ..checking.check import check
 from ..checking.finding import Finding
-from ..preparation.check_scene import ONLY_PREPARING_FINDS
+from ..checking.kinds import SPECTRAL_TABLE
 
 
 def as_it_is_now(scene: bpy.types.Scene, kept: Finding) -> Finding | None:
-    """Return a finding as a check finds it now; None if it is there no more. What no check looks for is as it was kept."""
-    if kept.kind in ONLY_PREPARING_FINDS:
+    """Return a finding as a check finds it now; None if it is there no more. What only preparing finds is as it was kept."""
+    if kept.kind == SPECTRAL_TABLE:
         return kept
     return next((each for each in check(scene) if _is_same(each, kept)), None)
 

@@ -12,13 +12,15 @@ from mathutils.bvhtree import BVHTree
 from ..analysis.mesh_modifiers import is_offset
 from ..analysis.surroundings import clear_analysis
 from ..analysis.validity import is_analysed
+from ..checking.coincident_checks import coincident_findings
 from ..checking.finding import Fix
+from ..checking.inspection import inspect
+from ..geometry.coincident_faces import least_squares_offsets
 from ..geometry.coplanar import flat_sides
 from ..geometry.solids import Solid
 from ..geometry.surfaces import FLOAT_ROUNDING
 from ..model.parameter import ParameterError
 from ..nodes.animation import curves
-from ..preparation.coincident_faces import least_squares_offsets
 from ..preparation.live import analyse
 from ..preparation.offset_modifier import add_offset
 from ..preparation.separate_faces import separate_coincident_faces, users_of_attributes
@@ -91,10 +93,11 @@ def part_faces(scene: bpy.types.Scene, fix: Fix) -> list[str]:
         shown_object(scene, name)
     was_analysed = is_analysed(scene)
     analyse(scene)
-    changes, left = separate_coincident_faces(scene)
+    changes = separate_coincident_faces(scene)
+    left = [] if changes else list(coincident_findings(inspect(scene, just_analysed=True)))
     if not was_analysed:
         clear_analysis(scene)
-    if not changes and left:
+    if left:
         raise ParameterError(str(next((each for each in left if each.name in fix.names), left[0])))
     return changes
 
