@@ -5,18 +5,23 @@ from __future__ import annotations
 import bpy
 
 from ..checking.check import check
-from ..checking.finding import Finding
+from ..checking.finding import Action, Finding
 from ..checking.kinds import SPECTRAL_TABLE
 
 
 def as_it_is_now(scene: bpy.types.Scene, kept: Finding) -> Finding | None:
-    """Return a finding as a check finds it now; None if it is there no more. What only preparing finds is as it was kept."""
+    """Return a finding as a check finds it now, which may mend it no more; None if it is there no more.
+
+    What only preparing finds is as it was kept.
+    """
     if kept.kind == SPECTRAL_TABLE:
         return kept
-    return next((each for each in check(scene) if _is_same(each, kept)), None)
+    found = [each for each in check(scene) if (each.kind, each.objects) == (kept.kind, kept.objects)]
+    return next(
+        (each for each in found if _way(each) == _way(kept)), next((each for each in found if each.fix is None), None)
+    )
 
 
-def _is_same(one: Finding, other: Finding) -> bool:
-    """Return whether two findings are of the same thing and mended the same way, whatever numbers they hold."""
-    alike = (one.kind, one.objects, one.fix is None) == (other.kind, other.objects, other.fix is None)
-    return alike and (one.fix is None or (one.fix.action, one.fix.path) == (other.fix.action, other.fix.path))
+def _way(finding: Finding) -> tuple[Action, str] | None:
+    """Return how a finding would be mended, whatever numbers that takes."""
+    return None if finding.fix is None else (finding.fix.action, finding.fix.path)

@@ -153,6 +153,9 @@ def test_a_button_fixes_one_problem_and_lists_what_is_left(operators, monkeypatc
     assert bpy.ops.nested_dielectric.fix_all() == {"FINISHED"}
     output = "".join(capfd.readouterr())
     assert "Left: 'Plane' is not closed" in output and "1 problem left" in output
+    with_fixes(monkeypatch)
+    with pytest.raises(RuntimeError, match="'Plane' is not closed"):
+        bpy.ops.nested_dielectric.fix(index=0)
     bpy.data.objects.remove(bpy.data.objects["Plane"])
     assert bpy.ops.nested_dielectric.fix(index=0) == {"FINISHED"}
     assert "'Plane' has this problem no more" in "".join(capfd.readouterr())
