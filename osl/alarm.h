@@ -25,12 +25,21 @@ int lacks_files(PathSpectrum path, int front_ior)
   return lacks_table(path) || (!front_ior && newest_osl());
 }
 
-/* Shows the error closure where the file lacks something, the scene cannot be asked, or its analysis is found wrong; returns
- * whether it does. */
+/* Whether the surface's medium is too thin here, or too far from the origin. Twice is no edge. */
+int is_too_thin()
+{
+  vector inward = backfacing() ? Ng : -Ng;
+  return ends_at_once(inward) && ends_at_once(tilted(inward));
+}
+
+/* Shows the error closure where the file lacks something, the scene cannot be asked, its analysis is found wrong, or single
+ * precision does not hold the surface; returns whether it does. */
 int raises_alarm(int lacks, Interface s, Medium own, ExteriorFacts facts, output closure color bsdf)
 {
   int unable = lacks || !s.can_trace;
-  int wrong = s.facts_are_wrong || (own.absorbs && !facts.may_hold_objects && spot_check() && holds_foreign(own));
+  int checked = spot_check();
+  int wrong = s.facts_are_wrong || (checked && is_too_thin()) ||
+              (own.absorbs && !facts.may_hold_objects && checked && holds_foreign(own));
   int raised = unable || wrong;
   if (raised)
     bsdf = error_closure(unable ? 1.0 : ALARM);

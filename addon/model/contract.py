@@ -175,6 +175,12 @@ def socket_path(slot: int | str, name: str) -> str:
     return f'material_slots[{slot}].material.node_tree.nodes["{GROUP_NAME}"].inputs["{name}"].default_value'
 
 
+PRECISION_LIMIT = 32.0
+"""Least thickness of a medium, in FLOAT_SPACING of its largest coordinate; a surface with less behind it shows the alarm."""
+
+FLOAT_SPACING = 1.2e-7
+"""Relative distance between numbers in single precision; up to twice as far as they lie."""
+
 NO_PRIORITY = -1.0
 """What outputs for artists tell of air, and where there is nothing to tell."""
 
