@@ -66,13 +66,13 @@ _RISING: tuple[Colour, ...] = (
 MOST_DEPTH = len(_RISING)
 """Media from which on depths look alike."""
 
-ALARM = Step(MAGENTA, "Alarm: nothing is told, and the scene cannot be asked")
+ALARM = Step(MAGENTA, "Alarm: not told, or wrongly")
 
 AIR = Step(GREY, "Air")
 
 STEPS: dict[DebugView, tuple[Step, ...]] = {
     DebugView.MEDIUM: (AIR,),
-    DebugView.VALIDITY: (Step(RED, "Does not exist: inside a winner"), Step(GREEN, "Exists")),
+    DebugView.VALIDITY: (Step(RED, "Does not exist"), Step(GREEN, "Exists")),
     DebugView.DEPTH: (
         Step(GREY, "Not known: told, or cut"),
         *(Step(colour, f"{1 + place}") for place, colour in enumerate(_RISING[:-1])),
@@ -105,7 +105,10 @@ HUES = 89
 HUE_STEP = 55
 """Of those hues between one priority and the next: both are Fibonacci numbers, so that near priorities look different."""
 
-SATURATION = 0.75
+FIRST_HUE, HUE_RANGE = 0.9, 0.85
+"""What the hues begin at and how far they go, in parts of the circle: magenta is the alarm's."""
+
+SATURATION, VALUE = 0.9375, 0.75
 
 OPACITY = {0: 0.5, 1: 0.25}
 """How much of what is behind a surface its colour covers in the view of validity: of one that does not exist, and that does."""
@@ -113,7 +116,8 @@ OPACITY = {0: 0.5, 1: 0.25}
 
 def medium_colour(priority: float) -> Colour:
     """Return the colour of the media of a priority, which count as one."""
-    return colorsys.hsv_to_rgb(priority % HUES * HUE_STEP % HUES / HUES, SATURATION, 1.0)
+    place = priority % HUES * HUE_STEP % HUES / HUES
+    return colorsys.hsv_to_rgb((FIRST_HUE + HUE_RANGE * place) % 1.0, SATURATION, VALUE)
 
 
 def step_of(view: DebugView, number: float) -> int:

@@ -11,7 +11,7 @@ from functools import reduce
 import bpy
 
 from ..model.contract import DEBUG_ALARM, DEBUG_HIDDEN, DebugView
-from ..model.debug_views import ALARM, HUE_STEP, HUES, OPACITY, SATURATION, STEPS, Step
+from ..model.debug_views import ALARM, FIRST_HUE, HUE_RANGE, HUE_STEP, HUES, OPACITY, SATURATION, STEPS, VALUE, Step
 from .names import DEBUG_GROUP
 from .numbers import Number
 from .parts import Part
@@ -66,10 +66,11 @@ class DebugPicture(Part):
         ramp = self.node("ShaderNodeValToRGB")
         _set_stops(ramp.color_ramp, rows)
         self.tree.links.new(((row + 0.5) / len(rows)).socket, ramp.inputs[0])
-        hue = ((self.number.math("FLOORED_MODULO", HUES)) * HUE_STEP).math("FLOORED_MODULO", HUES) / HUES
+        place = (self.number.math("FLOORED_MODULO", HUES) * HUE_STEP).math("FLOORED_MODULO", HUES) / HUES
+        hue = (FIRST_HUE + place * HUE_RANGE).math("FRACT")
         medium = self.node("ShaderNodeCombineColor")
         medium.mode = "HSV"
-        for value, socket in zip((hue.socket, SATURATION, 1.0), medium.inputs):
+        for value, socket in zip((hue.socket, SATURATION, VALUE), medium.inputs):
             if isinstance(value, float):
                 socket.default_value = value
             else:

@@ -72,4 +72,4 @@ def test_outputs_for_artists_have_the_shaders_names():
     new_scene()
     nd.new_material("Glass")
     assert material_version.find_group() is not None
-    assert [name.replace(" ", "") for name in sockets.FACT_OUTPUTS] == list(outputs)[2:]
+    assert [name.replace(" ", "") for name in sockets.FACT_OUTPUTS] == list(outputs)[3:]

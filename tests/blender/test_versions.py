@@ -59,6 +59,7 @@ PARTS = {
     for part in (
         "",
         "Coefficients",
+        "Debug Number",
         "Surroundings",
         "Light",
         "Weights",
@@ -70,7 +71,7 @@ PARTS = {
         "Dispersing",
         "Preview",
     )
-}
+} | {".Nested Dielectric Debug View"}
 
 ONE_OF_EACH = {
     "groups": ["Nested Dielectric", "Nested Dielectric Lights"],
