@@ -49,7 +49,7 @@ class DebugPicture(Part):
         colour = self.choose_vector(as_number, self.colour, self.join((number, number, number)))
         glow = self.node("ShaderNodeEmission")
         glow.inputs["Strength"].default_value = _WEAK
-        self.tree.links.new(self.scaled(colour, strength * camera * (1.0 / _WEAK)), glow.inputs["Color"])
+        self.tree.links.new(self.scaled(colour, strength * (1.0 / _WEAK)), glow.inputs["Color"])
         behind = 1.0 - strength * (1.0 - validity * as_number)
         clear = self.node("ShaderNodeBsdfTransparent")
         self.tree.links.new(self.join((behind, behind, behind)), clear.inputs["Color"])

@@ -11,6 +11,7 @@ from scenes import (
     add_sphere,
     diffuse,
     mostly_again,
+    native,
     new_scene,
     oiio,
     render,
@@ -21,6 +22,7 @@ from scenes import (
 import nested_dielectric as nd
 from nested_dielectric.model.contract import DebugView
 from nested_dielectric.model.debug_views import GREEN, OPACITY, RED, STEPS, medium_colour, step_of
+from nested_dielectric.nodes.shader_nodes import attribute
 from nested_dielectric.scene.debug_views import add_debug_passes, remove_debug_passes, set_debug_view
 
 # Single precision: sums of powers of two are exact, hues go through a few divisions.
@@ -179,15 +181,49 @@ def read_layers(path) -> dict[str, np.ndarray]:
     return channels
 
 
+def save_layers(scene: bpy.types.Scene) -> None:
+    settings = scene.render.image_settings
+    settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format = "OPEN_EXR_MULTILAYER"
+    settings.color_depth = "32"
+
+
+@pytest.mark.parametrize("osl", [True, False])
+def test_cycles_reads_a_view_layers_property_before_the_scenes_and_writes_no_aov_where_osl_runs(osl, tmp_path):
+    """What passes of debug views lean on: a newer Cycles that writes AOVs would spare their view layers."""
+    scene = new_scene(4)
+    scene.cycles.shading_system = osl
+    add_camera((0, 0, 5), (0, 0, 0), width=1)
+    material = native("Plain", "ShaderNodeEmission")
+    tree = material.node_tree
+    glow = next(node for node in tree.nodes if node.type == "EMISSION")
+    number = attribute(tree, "VIEW_LAYER", '["number"]')
+    tree.links.new(number.outputs["Fac"], glow.inputs["Strength"])
+    aov = tree.nodes.new("ShaderNodeOutputAOV")
+    aov.aov_name = "Value"
+    aov.inputs["Value"].default_value = 7.0
+    add_plane("Plane", 4.0, (0, 0, 0), (0, 0, 1), material)
+    first, second = scene.view_layers[0], scene.view_layers.new("Second")
+    first.name = "First"
+    for layer in (first, second):
+        layer.aovs.add().name = "Value"
+        layer.aovs[0].type = "VALUE"
+    scene["number"], second["number"] = 3.0, 5.0
+    save_layers(scene)
+    scene.cycles.samples = 1
+    scene.render.filepath = str(tmp_path / "layers.exr")
+    bpy.ops.render.render(write_still=True)
+    found = read_layers(tmp_path / "layers.exr")
+    assert found["First.Combined.R"][2, 2] == 3.0 and found["Second.Combined.R"][2, 2] == 5.0
+    assert found["First.Value.X"][2, 2] == (0.0 if osl else 7.0)
+
+
 @pytest.mark.parametrize("told", mostly_again(("asked", "native")))
 def test_view_layers_hold_exact_numbers_and_leave_the_picture_as_it_is(told, tmp_path):
     scene = nested_balls(told)
     set_world((0.5, 0.5, 0.5))
     scene.view_layers[0].name = "Main"
-    settings = scene.render.image_settings
-    settings.media_type = "MULTI_LAYER_IMAGE"
-    settings.file_format = "OPEN_EXR_MULTILAYER"
-    settings.color_depth = "32"
+    save_layers(scene)
     scene.cycles.samples = 4
 
     def layers(name):
