@@ -8,6 +8,7 @@ from __future__ import annotations
 import bpy
 
 from ...scene.lights import LOBE, RAYS
+from ..operators.debug_operators import AddDebugPasses, RemoveDebugPasses, ShowDebugView
 from ..operators.dispersion_operators import DispersionModel, SellmeierIor, Spectrum
 from ..operators.light_operators import AddPasses, LightCarrier, ShadowCaustics
 from ..operators.preparation_operators import ClearAnalysis, CutSurfaces, KeepCut, Prepare, PutBack, RenderWith
@@ -63,6 +64,10 @@ class ObjectMenu(bpy.types.Menu):
         for enable, text in ((True, "Shadow Caustics On"), (False, "Shadow Caustics Off")):
             layout.operator(ShadowCaustics.bl_idname, text=text).enable = enable
         layout.operator(AddPasses.bl_idname)
+        layout.separator()
+        layout.operator_menu_enum(ShowDebugView.bl_idname, "view")
+        layout.operator(AddDebugPasses.bl_idname)
+        layout.operator(RemoveDebugPasses.bl_idname)
 
 
 CLASSES = (ObjectMenu,)
