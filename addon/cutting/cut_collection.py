@@ -53,9 +53,10 @@ def surfaces_of(scene: bpy.types.Scene) -> dict[bpy.types.Object, bpy.types.Obje
 
 
 def exchange_mesh(surface: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
-    """Give a surface another mesh, and remove the one that it had."""
+    """Give a surface another mesh, and remove the one that it had unless others use it: they would go with it."""
     before, surface.data = surface.data, mesh
-    bpy.data.meshes.remove(before)
+    if not before.users:
+        bpy.data.meshes.remove(before)
 
 
 def find_nodes_modifier(obj: bpy.types.Object) -> bpy.types.NodesModifier | None:

@@ -5,16 +5,18 @@ import random
 
 import bpy
 import pytest
-from scenes import add_box, add_point_light, add_sphere, new_scene
+from scenes import add, add_box, add_point_light, add_sphere, new_scene
 from storms import raised_by_handlers
 
 import nested_dielectric as nd
 from nested_dielectric.checking.check import find_problems
+from nested_dielectric.cutting.baked_cut import delete_bake
 from nested_dielectric.cutting.cut_collection import surfaces_of
 from nested_dielectric.cutting.cutter import cutter_of
 from nested_dielectric.nodes.lights_group import find_lights
 from nested_dielectric.nodes.material_version import DAMAGED, MATERIAL_VERSION, find_group, group_version
 from nested_dielectric.nodes.wholeness import is_whole
+from nested_dielectric.preparation import live, prepare_scene
 from nested_dielectric.ui import media_list
 
 EVERYTHING = "ND_STRESS" in os.environ
@@ -130,6 +132,18 @@ def test_the_cutter_gets_its_drivers_back(scene):
     cutter.animation_data.drivers.remove(cutter.animation_data.drivers[0])
     nd.prepare(scene)
     assert {curve.data_path for curve in cutter_of(scene).animation_data.drivers} == driven
+
+
+@pytest.mark.always
+def test_an_object_that_an_artist_gives_the_mesh_of_a_cut_surface_stays(scene):
+    live.bake_cut(scene)
+    surface = surfaces_of(scene)[bpy.data.objects["Ball"]]
+    add("Mine", surface.data)
+    assert delete_bake(scene)
+    assert bpy.data.objects["Mine"].data != surface.data
+    bpy.data.objects["Mine"].data = surface.data
+    prepare_scene.put_back(scene)
+    assert len(bpy.data.objects["Mine"].data.vertices) == 0
 
 
 @pytest.mark.always
