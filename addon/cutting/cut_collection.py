@@ -5,6 +5,7 @@ from __future__ import annotations
 import bpy
 
 from ..nodes.cutting.names import CUT_GROUP
+from ..nodes.names import WHOLE
 from ..scene.media import CUT_OF
 
 COLLECTION = "Nested Dielectric Cut"
@@ -43,6 +44,24 @@ def ensure_collection(scene: bpy.types.Scene) -> bpy.types.Collection:
             if getattr(owner, name):
                 setattr(owner, name, False)
     return collection
+
+
+def move_out_others(scene: bpy.types.Scene, collection: bpy.types.Collection) -> None:
+    """Move what artists have put into the collection, or made while it was active, into the scene's own."""
+    for obj in [each for each in collection.objects if not _is_ours(each)]:
+        if obj.name not in scene.collection.objects:
+            scene.collection.objects.link(obj)
+        collection.objects.unlink(obj)
+    for child in list(collection.children):
+        if child.name not in scene.collection.children:
+            scene.collection.children.link(child)
+        collection.children.unlink(child)
+
+
+def _is_ours(obj: bpy.types.Object) -> bool:
+    """Return whether an object shows a medium's surface, or cuts, though others have taken its mark."""
+    trees = (modifier.node_group for modifier in obj.modifiers if modifier.type == "NODES")
+    return CUT_OF in obj or any(tree is not None and WHOLE in tree for tree in trees)
 
 
 def surfaces_of(scene: bpy.types.Scene) -> dict[bpy.types.Object, bpy.types.Object]:

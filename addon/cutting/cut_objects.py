@@ -26,6 +26,7 @@ from .cut_collection import (
     ensure_collection,
     ensure_nodes_modifier,
     find_collection,
+    move_out_others,
     remove_object,
     remove_unused_tree,
     surfaces_of,
@@ -44,6 +45,7 @@ def show_plan(scene: bpy.types.Scene, plan: Plan) -> None:
         scene.update_tag()
     numbers = plan.numbers()
     collection = ensure_collection(scene)
+    move_out_others(scene, collection)
     surfaces = _take_surfaces(collection, numbers)
     for obj in scene.objects:
         if HIDDEN_BY_CUT in obj and obj not in numbers:
@@ -108,6 +110,7 @@ def remove_cut_objects(scene: bpy.types.Scene) -> None:
         scene.update_tag()
     collection = find_collection(scene)
     if collection is not None:
+        move_out_others(scene, collection)
         for obj in list(collection.objects):
             remove_object(obj)
         bpy.data.collections.remove(collection)

@@ -11,7 +11,7 @@ from storms import raised_by_handlers
 import nested_dielectric as nd
 from nested_dielectric.checking.check import find_problems
 from nested_dielectric.cutting.baked_cut import delete_bake
-from nested_dielectric.cutting.cut_collection import surfaces_of
+from nested_dielectric.cutting.cut_collection import find_collection, surfaces_of
 from nested_dielectric.cutting.cutter import cutter_of
 from nested_dielectric.nodes.lights_group import find_lights
 from nested_dielectric.nodes.material_version import DAMAGED, MATERIAL_VERSION, find_group, group_version
@@ -144,6 +144,26 @@ def test_an_object_that_an_artist_gives_the_mesh_of_a_cut_surface_stays(scene):
     bpy.data.objects["Mine"].data = surface.data
     prepare_scene.put_back(scene)
     assert len(bpy.data.objects["Mine"].data.vertices) == 0
+
+
+@pytest.mark.always
+@pytest.mark.parametrize("end", [nd.prepare, prepare_scene.put_back])
+def test_what_an_artist_puts_into_the_collection_of_cut_surfaces_stays(end, scene):
+    collection = find_collection(scene)
+    mine = bpy.data.objects.new("Mine", bpy.data.meshes.new("Mine"))
+    inner = bpy.data.objects.new("Inner", bpy.data.meshes.new("Inner"))
+    collection.objects.link(mine)
+    child = bpy.data.collections.new("Child")
+    child.objects.link(inner)
+    collection.children.link(child)
+    collection.objects.link(bpy.data.objects["Floor"])
+    if end == prepare_scene.put_back:
+        del surfaces_of(scene)[bpy.data.objects["Ball"]]["nd_cut_of"]
+    end(scene)
+    assert {"Mine", "Inner", "Floor", "Ball"} <= set(scene.objects.keys())
+    assert mine.name in scene.collection.objects and child.name in scene.collection.children
+    shown = [obj.name for obj in scene.objects if obj.name.startswith("Ball (cut)")]
+    assert len(shown) == (end == nd.prepare)
 
 
 @pytest.mark.always
