@@ -128,14 +128,13 @@ def register() -> None:
 
 
 def _add_drawings(undo: ExitStack) -> None:
-    """Let Blender's own panels, headers and menus show what the extension adds to them; some are drawn all the time."""
+    """Let Blender's own panels, headers and menus show what the extension adds to them."""
     places = [("append", getattr(bpy.types, name), draw) for name, draw in (*notices.PLACES, *medium_panels.PLACES)]
     places += [
         ("prepend", bpy.types.VIEW3D_MT_object, object_menu.draw_entry),
         ("append", bpy.types.NODE_MT_category_shader_shader, add_menu.draw_entry),
     ]
-    for add, place, unguarded in places:
-        draw = guarded("while a panel was drawn", writes=False)(unguarded)
+    for add, place, draw in places:
         getattr(place, add)(draw)
         undo.callback(place.remove, draw)
 

@@ -6,6 +6,7 @@ import bpy
 
 from ...model.parameter import GROUP_NAME
 from ...nodes.compatibility import UnsupportedError
+from ...preparation.guard import guarded
 from ...scene.new_materials import add_node
 from ..polls import supported
 
@@ -61,6 +62,7 @@ class AddNode(bpy.types.Operator):
         return {"FINISHED"}
 
 
+@guarded("while a panel was drawn", writes=False)
 def draw_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     """Draw the node as an entry of a menu of Blender's."""
     if edited_material(context.space_data) is not None:

@@ -13,6 +13,7 @@ from ...model.effects import has_effect
 from ...model.parameter import BASIC_KEYWORDS, BASICS, LIGHTS_BY_LOBE, SPECTRUM_PANEL
 from ...model.parameters import BY_KEYWORD, SOCKETS
 from ...nodes.animation import is_animated
+from ...preparation.guard import guarded
 from ...scene.lights import lobe_lights
 from ...scene.materials import get_parameter, half_distance, parameter_socket, rendered_node
 from ..active_medium import active_medium
@@ -117,6 +118,7 @@ class _HeadingPanel(_OfMedium):
         draw_advanced(self.layout, context, active_medium(context), self.bl_label)
 
 
+@guarded("while a panel was drawn", writes=False)
 def draw_in_material_properties(self: bpy.types.Panel, context: bpy.types.Context) -> None:
     """Draw what artists change first, below the material's slots."""
     material = active_medium(context)

@@ -12,7 +12,7 @@ import bpy
 from ...cutting.backends import last_choice
 from ...nodes.compatibility import blender_problem
 from ...nodes.render_settings import achromatic_reason, settings_problem
-from ...preparation.guard import faults
+from ...preparation.guard import faults, guarded
 from ...scene.debug_views import debug_notice
 from ..drawing import draw_alert
 from ..media_list import listed_media
@@ -57,6 +57,7 @@ def draw_fault_button(layout: bpy.types.UILayout) -> None:
         layout.operator(CopyFaults.bl_idname, icon="COPYDOWN")
 
 
+@guarded("while a panel was drawn", writes=False)
 def draw_in_properties(self: bpy.types.Panel, context: bpy.types.Context) -> None:
     """Draw the notice in Render properties, in full, with the button that mends it."""
     problem = render_problem(context.scene)
@@ -80,6 +81,7 @@ def draw_debug_notice(layout: bpy.types.UILayout, context: bpy.types.Context) ->
         layout.operator(ShowDebugView.bl_idname, text="Debug View: None", icon="X").view = "NONE"
 
 
+@guarded("while a panel was drawn", writes=False)
 def draw_in_line(self: bpy.types.Header | bpy.types.Menu, context: bpy.types.Context) -> None:
     """Draw the notice in one line of a header or a menu."""
     problem = render_problem(context.scene) or _debug_notice(context.scene)
@@ -89,6 +91,7 @@ def draw_in_line(self: bpy.types.Header | bpy.types.Menu, context: bpy.types.Con
         row.label(text=_short(problem), icon="ERROR")
 
 
+@guarded("while a panel was drawn", writes=False)
 def draw_over_picture(self: bpy.types.Header, context: bpy.types.Context) -> None:
     """Draw the notice where a render's picture is shown, which is all that an artist sees who pressed F12."""
     image = context.space_data.image

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import bpy
 
+from ...preparation.guard import guarded
 from ...scene.lights import LOBE, RAYS
 from ..operators.debug_operators import AddDebugPasses, RemoveDebugPasses, ShowDebugView
 from ..operators.dispersion_operators import DispersionModel, SellmeierIor, Spectrum
@@ -21,6 +22,7 @@ from ..presets.preset_menus import PresetMenu
 from ..presets.preset_operators import FitDepth
 
 
+@guarded("while a panel was drawn", writes=False)
 def draw_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
     """Draw the submenu as an entry at the end of a menu of Blender's that is far from Delete."""
     self.layout.menu(ObjectMenu.bl_idname, icon="MATERIAL")
