@@ -13,6 +13,7 @@ from nested_dielectric.checking.check import find_problems
 from nested_dielectric.cutting.baked_cut import delete_bake
 from nested_dielectric.cutting.cut_collection import find_collection, surfaces_of
 from nested_dielectric.cutting.cutter import cutter_of
+from nested_dielectric.nodes import wholeness
 from nested_dielectric.nodes.lights_group import find_lights
 from nested_dielectric.nodes.material_version import DAMAGED, MATERIAL_VERSION, find_group, group_version
 from nested_dielectric.nodes.wholeness import is_whole
@@ -86,6 +87,17 @@ def test_a_material_from_whose_group_anything_is_taken_is_damaged(part, path):
         taken = take_out(bpy.data.node_groups[name], part, chance)
         assert group_version(group) == DAMAGED, taken
         assert any("is damaged" in str(problem) for problem in find_problems(bpy.context.scene)), taken
+
+
+@pytest.mark.always
+def test_links_that_an_older_blender_has_dropped_are_missed_by_the_newer_one_alone(scene, monkeypatch):
+    tree = find_group()
+    take_out(bpy.data.node_groups[".Nested Dielectric Native Special"], "link", random.Random(0))
+    assert not is_whole(tree)
+    monkeypatch.setattr(wholeness, "_version", lambda: 100 * bpy.app.version[0] + bpy.app.version[1] - 1)
+    assert is_whole(tree)
+    take_out(bpy.data.node_groups[".Nested Dielectric Native Special"], "node", random.Random(0))
+    assert not is_whole(tree)
 
 
 @pytest.mark.always
