@@ -5,25 +5,28 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+import bpy
 import numpy as np
 
 from ..geometry.gaps import thin_walls, thinnest_wall
 from ..geometry.solids import Solid
-from ..geometry.surfaces import FLOAT_ROUNDING, TOUCH_TOLERANCE
+from ..geometry.surfaces import TOUCH_TOLERANCE
 from .finding import Action, Finding, Fix, Place
 from .inspection import Inspection, Medium, listed_faces
 from .kinds import PRECISION, THIN_WALL
 
-COARSEST = 3e-3
-"""The largest step between neighbouring coordinates, in mean ways through a medium: from there on a ball's picture is off by
-more than a hundredth (glass with water in it, 1e4 to 1e6 units away).
+COARSEST = 6e-4
+"""The largest step between neighbouring coordinates, in diagonals of a medium's box: beyond, a ball's picture is off by more
+than a hundredth (glass with water in it, 2e4 to 1e6 units away), and walls show the alarm.
 """
 
 SMALLEST = 3e-5
 """The smallest mean way through a medium that Cycles' rays get through, in scene units."""
 
-THINNEST = 5.0
-"""The thinnest wall, in distances within which surfaces count as touching."""
+ALARM = 32.0 * 1.2e-7
+"""The least thickness behind a surface, in its largest coordinate, with which the shader shows no alarm: 32 steps between
+numbers in single precision.
+"""
 
 MOST_NAMES = 16
 """The most names of objects that one finding lists."""
@@ -33,14 +36,14 @@ MOST_NAMES = 16
 class _Measures:
     """What is measured of n media.
 
-    :ivar boxes: (n, 2, 3) in the world; scales: (n,) mean scales from their meshes to it.
+    :ivar boxes: (n, 2, 3) in the world; sizes: (n,) their diagonals.
     :ivar thick: (n,) mean lengths of ways through them, scene units; infinite where a matrix leaves no volume.
     :ivar steps: (n,) between neighbouring coordinates in the world; mesh_steps: in their meshes, as large as they show.
     :ivar walls: (n,) thickness of their thinnest walls in their own units.
     """
 
     boxes: np.ndarray
-    scales: np.ndarray
+    sizes: np.ndarray
     thick: np.ndarray
     steps: np.ndarray
     mesh_steps: np.ndarray
@@ -60,10 +63,9 @@ def _measures(media: Sequence[Medium]) -> _Measures:
     volume = np.abs(np.linalg.det(linear))
     flat = volume <= 1e-12 * np.prod(np.linalg.norm(linear, axis=1), axis=1)
     scales = np.cbrt(volume)
+    sizes = np.where(flat, np.inf, np.linalg.norm(boxes[:, 1] - boxes[:, 0], axis=1))
     thick = np.where(flat, np.inf, np.maximum(scales * own_thickness, 1e-300))
-    return _Measures(
-        boxes, scales, thick, _steps(np.abs(boxes).max(axis=(1, 2))), np.where(flat, 0.0, scales * _steps(reach)), walls
-    )
+    return _Measures(boxes, sizes, thick, _steps(np.abs(boxes).max(axis=(1, 2))), scales * _steps(reach), walls)
 
 
 def _own_thickness(solid: Solid) -> float:
@@ -86,11 +88,11 @@ def precision_findings(inspection: Inspection) -> Iterator[Finding]:
     if not inspection.media:
         return
     measures = _measures(inspection.media)
-    far = measures.steps > COARSEST * measures.thick
+    far = measures.steps > COARSEST * measures.sizes
     if far.any():
         yield _far_finding(inspection, measures, np.flatnonzero(far))
     small = measures.thick < SMALLEST
-    coarse = measures.mesh_steps > COARSEST * measures.thick
+    coarse = measures.mesh_steps > COARSEST * measures.sizes
     named = set()
     for index in np.flatnonzero(~far & (small | coarse | np.isfinite(measures.walls))):
         medium = inspection.media[index]
@@ -101,7 +103,7 @@ def precision_findings(inspection: Inspection) -> Iterator[Finding]:
         elif coarse[index]:
             found = _mesh_finding(medium, float(measures.mesh_steps[index]))
         else:
-            found = _wall_finding(medium, float(measures.walls[index]))
+            found = _wall_finding(medium, float(measures.walls[index]), inspection.scene)
         if found is not None:
             named.add(medium.obj)
             yield found
@@ -112,22 +114,21 @@ def _far_finding(inspection: Inspection, measures: _Measures, far: np.ndarray) -
 
     :param far: indices of those.
     """
-    boxes, steps, thick = measures.boxes, measures.steps, measures.thick
-    worst = far[np.argmax(steps[far] / thick[far])]
+    boxes, steps, sizes = measures.boxes, measures.steps, measures.sizes
+    worst = far[np.argmax(steps[far] / sizes[far])]
     names = list(dict.fromkeys(inspection.media[index].obj.name for index in (worst, *far)))
     middle = (boxes[:, 0].min(axis=0) + boxes[:, 1].max(axis=0)) / 2.0
     near = np.maximum(_steps(np.abs(boxes - middle).max(axis=(1, 2))), measures.mesh_steps)
-    helps = bool((near <= COARSEST * thick)[far].all())
+    helps = bool((near <= COARSEST * sizes)[far].all())
     text = (
-        f"stands where coordinates go in steps of {steps[worst]:.2g}, too coarse for what is {thick[worst]:.2g} thick"
+        f"stands where coordinates go in steps of {steps[worst]:.2g}, too coarse for what is {sizes[worst]:.2g} large"
     )
     remedy = (
         "move all of the scene so that its media are around the origin"
         if helps
         else "bring the media nearer to each other and to the origin, or take them apart into scenes"
     )
-    scene = inspection.scene
-    fix = Fix(Action.MOVE_TO_ORIGIN, (scene.name,), safe=False) if helps and scene.library is None else None
+    fix = _move_to_origin(inspection.scene) if helps else None
     place = Place(point=tuple(boxes[worst].mean(axis=0).tolist()))
     return Finding(PRECISION, names[0], text, remedy, tuple(names[1:MOST_NAMES]), place, fix)
 
@@ -156,20 +157,35 @@ def _middle(medium: Medium) -> Place:
     return Place(point=tuple(np.mean(medium.place.box, axis=0).tolist()))
 
 
-def _wall_finding(medium: Medium, wall: float) -> Finding | None:
+def _wall_finding(medium: Medium, wall: float, scene: bpy.types.Scene) -> Finding | None:
     """Return what is wrong with a medium whose own walls are thinner than rays tell.
+
+    That is so where they are thinner than what counts as touching in bodies of that size, or than the alarm allows there.
 
     :param wall: the thickness of the thinnest in its own units.
     """
     place = medium.place
-    size = float(np.linalg.norm(np.subtract(*place.box)))
-    limit = THINNEST * (TOUCH_TOLERANCE * size + FLOAT_ROUNDING * float(np.abs(place.box).max()))
+    of_size = TOUCH_TOLERANCE * float(np.linalg.norm(np.subtract(*place.box)))
+    of_place = ALARM * float(np.abs(place.box).max())
     least = wall * float(np.linalg.svd(place.matrix[:3, :3], compute_uv=False)[-1])
+    limit = max(of_size, of_place)
     layer = thin_walls(place, limit) if least < limit else None
     if layer is None:
         return None
-    text = f"has walls {layer.thickness.min():.2g} thin, of which rays tell {limit:.2g} and more"
+    thin = float(layer.thickness.min())
+    kind, fix = THIN_WALL, None
+    text = f"has walls {thin:.2g} thin, of which rays tell {limit:.2g} and more"
     remedy = "make them thicker, or leave them out"
+    half = 0.5 * float(np.subtract(*place.box[::-1]).max())
+    if thin > of_size and thin > ALARM * half:
+        kind, text = PRECISION, f"{text} so far from the origin"
+        remedy = "move all of the scene so that its media are around the origin, or make them thicker"
+        fix = _move_to_origin(scene)
     point = layer.points[:, 0] - 0.5 * layer.thickness[0] * layer.normals[:, 0]
     faces = listed_faces(medium.faces[layer.faces])
-    return Finding(THIN_WALL, medium.obj.name, text, remedy, place=Place(faces, tuple(point.tolist())))
+    return Finding(kind, medium.obj.name, text, remedy, place=Place(faces, tuple(point.tolist())), fix=fix)
+
+
+def _move_to_origin(scene: bpy.types.Scene) -> Fix | None:
+    """Return what brings a scene to the origin."""
+    return Fix(Action.MOVE_TO_ORIGIN, (scene.name,), safe=False) if scene.library is None else None
