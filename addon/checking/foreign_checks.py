@@ -23,6 +23,10 @@ NEAR = 1e-4
 """Distance by which to move what touches something else, in diagonals of its box."""
 
 
+ASIDE = np.array([0.61, 0.55, 0.57])
+"""A way along which no surface is likely to lie."""
+
+
 def foreign_findings(inspection: Inspection) -> Iterator[Finding]:
     """Yield media whose faces lie in the same place as those of what is no medium, of which a ray meets either.
 
@@ -77,7 +81,9 @@ def _place_of(foreign: Shape, near: list[Medium]) -> Finding | None:
     holders, crossed = [], []
     where = None
     for medium in near:
-        within = _held(medium, points)
+        # What only touches a surface may lie on either side of it by rounding.
+        aside = NEAR * float(np.linalg.norm(np.subtract(*medium.place.box))) * ASIDE
+        within = _held(medium, points + aside) & _held(medium, points - aside)
         if within.all():
             holders.append(medium)
         elif within.any():

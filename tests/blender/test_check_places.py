@@ -80,6 +80,8 @@ def test_what_stands_inside_a_medium_or_crosses_it_is_a_note_for_each_object():
     add_box("Spoon", (0.6, 0, 0), (0.65, 0.1, 2.0), diffuse())
     add_box("Pearl", (-0.1, -0.1, -0.1), (0.1, 0.1, 0.1), diffuse())
     add_box("Table", (-4, -4, -3), (4, 4, -2), diffuse())
+    add_box("Corner", (6, 6, 6), (7, 7, 7), nd.new_material("Block", ior=1.4), 3)
+    add_box("Beside", (5, 5, 5), (6, 6, 6), diffuse())
     found = {each.name: each for each in findings()}
     assert {name: each.kind for name, each in found.items()} == {
         "Spoon": kinds.FOREIGN_ACROSS,
