@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-import bpy  # before mathutils, which lives inside it
+import bpy  # before bmesh, which lives inside it
+
+import bmesh  # isort: skip
 from random_bodies import OUTSIDE, add_body, own_glass, stage
 from random_media import Body, Medium, Place
 from scenes import add, add_camera, add_mesh, add_sphere, cycles_glass
@@ -79,11 +81,13 @@ def thin_walled(thickness: float, kind: str) -> bpy.types.Scene:
         ball("Inside", inner, cycles_glass(1.33 / 1.5))
         return scene
     nested = kind == "nested"
-    shell = ball("Shell", 1.0, _nested("Glass", 1.5, 0) if nested else cycles_glass(1.5))
-    cavity = ball("Cavity", inner, None)
-    cavity.data.flip_normals()
-    with bpy.context.temp_override(active_object=shell, selected_editable_objects=[shell, cavity]):
-        bpy.ops.object.join()
+
+    def shell(bm: bmesh.types.BMesh) -> None:
+        for radius in (1.0, inner):
+            made = bmesh.ops.create_uvsphere(bm, u_segments=32, v_segments=16, radius=radius)
+        bmesh.ops.reverse_faces(bm, faces=list({face for vertex in made["verts"] for face in vertex.link_faces}))
+
+    add_mesh("Shell", shell, _nested("Glass", 1.5, 0) if nested else cycles_glass(1.5))
     ball("Water", middle, _nested("Water", 1.33, 1) if nested else cycles_glass(1.33))
     bpy.context.view_layer.update()
     return scene
@@ -108,10 +112,3 @@ def shells(count: int, kind: str) -> bpy.types.Scene:
             nd.set_priority(obj, count - index)
     bpy.context.view_layer.update()
     return scene
-
-
-def droplet_mesh(material: bpy.types.Material, radius: float) -> bpy.types.Object:
-    """A coarse ball at the origin."""
-    import bmesh
-
-    return add_mesh("Droplet", lambda bm: bmesh.ops.create_icosphere(bm, subdivisions=2, radius=radius), material)

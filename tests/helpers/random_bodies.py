@@ -18,6 +18,10 @@ import nested_dielectric as nd
 
 RESOLUTION = 32
 MOST_BOUNCES = 1024
+BOUNCES_INSIDE = 128
+"""From inside, flat faces catch light for ever; where others lie hidden behind them, each bounce takes several transparent ones,
+of which Cycles has 1,024.
+"""
 
 
 OUTSIDE = ((0.37, -7.9, 1.13), (0.02, 0.01, 0.03), 28.0)
@@ -60,6 +64,9 @@ def stage(resolution: int = RESOLUTION, view=OUTSIDE) -> bpy.types.Scene:
 def build(description: RandomScene, glass: bool = False) -> bpy.types.Scene:
     """Build a scene; of Cycles' own Glass on the same bodies if asked to."""
     scene = stage(view=INSIDE if description.camera_inside else OUTSIDE)
+    if description.camera_inside:
+        for limit in ("max_bounces", "transmission_bounces", "glossy_bounces"):
+            setattr(scene.cycles, limit, BOUNCES_INSIDE)
     materials = [(own_glass if glass else nested)(index, medium) for index, medium in enumerate(description.media)]
     for index, body in enumerate(description.bodies):
         add_body(f"Body {index}", body, materials[body.medium])

@@ -111,23 +111,26 @@ def can_be_native(result: nd.Preparation) -> bool:
     return not any(need.is_hard for need in needs.find_needs(bpy.context.scene, result.cut, result.found))
 
 
-def by_all_ways(build_media: Callable[[], object], samples: int = SAMPLES, splits: str = "") -> dict[str, Picture]:
-    """Build a scene of nested dielectrics and render it by every way that can.
+def by_all_ways(
+    build_media: Callable[[], object], samples: int = SAMPLES, splits: str = ""
+) -> tuple[dict[str, Picture], list[str]]:
+    """Build a scene of nested dielectrics and render it by every way that can; return the pictures, and problems that are told.
 
     :param splits: how its light is split, see :mod:`random_media`.
     """
     build_media()
-    pictures = {}
+    pictures, problems = {}, []
     for seed, (way, prepare) in enumerate(PREPARE.items()):
         result = prepare()
         if way == NATIVE and not can_be_native(result):
             continue
+        problems = problems or [str(problem) for problem in result.problems]
         if splits == SPLITS_BY_CYCLES:
             bpy.context.scene.render.use_motion_blur = False
             if way != ASKED:
                 nd.analyse(bpy.context.scene)
         pictures[way] = take(seed, samples)
-    return pictures
+    return pictures, problems
 
 
 def in_glass(build_glass: Callable[[], object], samples: int = SAMPLES) -> Picture:
@@ -147,7 +150,7 @@ def chances(pictures: dict[str, Picture], reference: str, ways: tuple[str, ...] 
 
 def measured(description: RandomScene, samples: int = SAMPLES) -> dict:
     """Return what all ways say of a random scene, with Cycles' own Glass on the same bodies beside them."""
-    pictures = by_all_ways(lambda: build(description), samples, description.splits)
+    pictures, problems = by_all_ways(lambda: build(description), samples, description.splits)
     compared = dict(pictures)
     if description.splits == SPLITS_BY_TIME:
         compared.pop(NATIVE, None)  # Cycles' own dispersion has other curves and no unclamped tables of ours
@@ -157,6 +160,7 @@ def measured(description: RandomScene, samples: int = SAMPLES) -> dict:
         "ways": {way: picture.numbers() for way, picture in pictures.items()},
         "chances": chances(compared, ASKED),
         "visible": float(np.median(visible)),
+        "problems": problems,
     }
 
 
@@ -165,7 +169,7 @@ def measured_split(description: RandomScene, build_split: Callable[[RandomScene]
 
     :param build_split: builds those and returns what is wrong with them.
     """
-    pictures = by_all_ways(lambda: build(description), samples)
+    pictures, _ = by_all_ways(lambda: build(description), samples)
     pictures[GLASS] = in_glass(lambda: build(description, glass=True), samples)
     wrong = build_split(description)
     pictures[SPLIT] = take(11, samples)
@@ -183,7 +187,7 @@ def against(
     reference: Picture, build_media: Callable[[], object], build_glass: Callable[[], object] | None = None
 ) -> dict:
     """Return what all ways say of a scene beside a picture that it should be, and beside Cycles' own Glass."""
-    pictures = by_all_ways(build_media, MANY)
+    pictures, _ = by_all_ways(build_media, MANY)
     if build_glass is not None:
         pictures[GLASS] = in_glass(build_glass, MANY)
     pictures[REFERENCE] = reference

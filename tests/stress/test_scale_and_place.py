@@ -13,8 +13,8 @@ SIZES = (1e-4, 1e-3, 1e-2, 1e-1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6)
 PLACES = (1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6)
 """Distances from the origin along all axes, of a scene that is two units wide."""
 
-FARTHEST = 1e2
-"""Beyond it single precision moves surfaces by more than rays leave out, and pictures change: 2e-4 of a unit at 1e3."""
+FARTHEST = 1e4
+"""Beyond it single precision moves points so far that pictures change, those of Cycles' own Glass as well: by 0.008 at 1e5."""
 
 
 @functools.cache
