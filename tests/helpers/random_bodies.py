@@ -19,8 +19,9 @@ import nested_dielectric as nd
 RESOLUTION = 32
 MOST_BOUNCES = 1024
 BOUNCES_INSIDE = 128
-"""From inside, flat faces catch light for ever; where others lie hidden behind them, each bounce takes several transparent ones,
-of which Cycles has 1,024.
+"""Inside flat faces light is caught for ever. Where others lie hidden before them, each bounce takes several transparent ones.
+
+Cycles has 1,024 of these.
 """
 
 
