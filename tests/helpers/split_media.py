@@ -20,6 +20,9 @@ from hand_split import Piece, split, wrong_points
 CHECKED = 12
 """Points of each piece at which brute force says which media it must part."""
 
+STEP = 1e-5
+"""How far from them it asks: so few points lie nearer to an edge."""
+
 
 def arrays_of(description: RandomScene) -> list[Body]:
     """Build a scene and return its bodies as arrays in the world, counterclockwise from outside."""
@@ -39,7 +42,7 @@ def build_split(description: RandomScene) -> list[str]:
     """Build the scene of hand-split pieces; return names of pieces, one for every point where brute force finds other media."""
     bodies = arrays_of(description)
     pieces = split(bodies).pieces
-    wrong = wrong_points(bodies, pieces, CHECKED)
+    wrong = wrong_points(bodies, pieces, CHECKED, STEP)
     stage(view=OUTSIDE)
     for piece in pieces:
         add_piece(piece, description)
