@@ -11,6 +11,7 @@ import numpy as np
 from ..geometry.gaps import thin_walls, thinnest_wall
 from ..geometry.solids import Solid
 from ..geometry.surfaces import TOUCH_TOLERANCE
+from ..model.contract import FLOAT_SPACING, PRECISION_LIMIT
 from .finding import Action, Finding, Fix, Place
 from .inspection import Inspection, Medium, listed_faces
 from .kinds import PRECISION, THIN_WALL
@@ -23,10 +24,8 @@ than a hundredth (glass with water in it, 2e4 to 1e6 units away), and walls show
 SMALLEST = 3e-5
 """The smallest mean way through a medium that Cycles' rays get through, in scene units."""
 
-ALARM = 32.0 * 1.2e-7
-"""The least thickness behind a surface, in its largest coordinate, with which the shader shows no alarm: 32 steps between
-numbers in single precision.
-"""
+ALARM = PRECISION_LIMIT * FLOAT_SPACING
+"""The least thickness behind a surface, in its largest coordinate, with which the shader shows no alarm."""
 
 MOST_NAMES = 16
 """The most names of objects that one finding lists."""
