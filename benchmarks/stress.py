@@ -17,6 +17,7 @@ import bpy  # noqa: F401  before mathutils, which the helpers use
 import numpy as np
 from bench_report import markdown, renew
 from matplotlib.figure import Figure
+from random_media import SCENES
 from significance import STRESS_ASSERTIONS, SUITE, stress_rate
 
 HERE = Path(__file__).resolve().parent
@@ -65,20 +66,32 @@ def order(item: tuple[str, dict]) -> tuple[float, str]:
 # Tables -------------------------------------------------------------------------------------------------------------
 
 
-def furnace_table(rows: Sequence[dict]) -> str:
-    """How far random scenes are from white, by way."""
-    header = ["Random scenes in a white furnace", "scenes", "mean deviation", "lowest", "highest"]
-    header += ["brightest part of a pixel, sharp scenes", "NaN or infinite"]
+def furnace_table(title: str, rows: Sequence[dict]) -> str:
+    """How far random scenes are from white, by way; the highest with its own standard error."""
+    header = [title, "scenes", "mean deviation", "lowest", "highest", "brightest part of a pixel", "NaN or infinite"]
     lines = []
     for way, label in LABELS.items():
         chosen = [row["ways"][way] for row in rows if way in row["ways"]]
         if not chosen:
             continue
         means = [numbers["mean"] for numbers in chosen]
-        sharp = [row["ways"][way]["highest"] for row in rows if way in row["ways"] and is_sharp(row)]
-        cells = [str(len(chosen)), *(small(value) for value in (np.mean(means), min(means), max(means)))]
-        lines.append([label, *cells, f"{max(sharp):.6f}", str(sum(numbers["broken"] for numbers in chosen))])
+        highest = max(chosen, key=lambda numbers: numbers["mean"])
+        cells = [str(len(chosen)), small(np.mean(means)), small(min(means)), small(highest["mean"])]
+        if highest["error"] > 1e-6:
+            cells[-1] += f" ± {highest['error']:.1e}"
+        brightest = max(numbers["highest"] for numbers in chosen)
+        lines.append([label, *cells, f"{brightest:.6g}", str(sum(numbers["broken"] for numbers in chosen))])
     return markdown(header, lines)
+
+
+def furnace_tables(rows: Sequence[dict]) -> list[str]:
+    """Apart from each other: scenes in which no sample weighs more than 1, others, and views from inside, where light is caught."""
+    groups = {
+        "White furnace: sharp media seen from outside": [row for row in rows if is_sharp(row) and not row["inside"]],
+        "Rough or dispersing media seen from outside": [row for row in rows if not is_sharp(row) and not row["inside"]],
+        "Views from inside": [row for row in rows if row["inside"]],
+    }
+    return [furnace_table(title, chosen) for title, chosen in groups.items() if chosen]
 
 
 def is_sharp(row: dict) -> bool:
@@ -176,8 +189,9 @@ def page(tables: dict[str, dict[str, dict]]) -> str:
     if "random" in tables:
         rows = list(tables["random"].values())
         media, seconds = sum(row["media"] for row in rows), sum(row["seconds"] for row in rows)
-        parts.append(f"{len(rows)} random scenes of {media} media, {seconds / 60:.0f} minutes.")
-        parts += [furnace_table(rows), "![Deviations of random scenes](results/stress_random.png)"]
+        whole = "" if len(rows) == len(SCENES) else f", the first of {len(SCENES)}: the others are not measured yet"
+        parts.append(f"{len(rows)} random scenes of {media} media{whole}; {seconds / 60:.0f} minutes on the wall.")
+        parts += [*furnace_tables(rows), "![Deviations of random scenes](results/stress_random.png)"]
     if "random" in tables or "split" in tables:
         parts.append(agreement_table(tables))
     parts += [far_table(table, tables[table]) for table in FAR if table in tables]
