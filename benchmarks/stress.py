@@ -85,7 +85,7 @@ def furnace_table(title: str, rows: Sequence[dict]) -> str:
 
 
 def furnace_tables(rows: Sequence[dict]) -> list[str]:
-    """Apart from each other: scenes in which no sample weighs more than 1, others, and views from inside, where light is caught."""
+    """Tables of scenes in which no sample weighs more than 1, of others, and of views from inside, where light is caught."""
     groups = {
         "White furnace: sharp media seen from outside": [row for row in rows if is_sharp(row) and not row["inside"]],
         "Rough or dispersing media seen from outside": [row for row in rows if not is_sharp(row) and not row["inside"]],
@@ -207,7 +207,8 @@ def page(tables: dict[str, dict[str, dict]]) -> str:
 
 
 def plot_random(rows: Sequence[dict], path: Path) -> None:
-    """Deviations of all random scenes, sorted, by way, to a PNG."""
+    """Deviations of sharp random scenes, sorted, by way, to a PNG; noise of others would hide them."""
+    rows = [row for row in rows if is_sharp(row)]
     figure = Figure(figsize=(7.0, 4.2), layout="constrained")
     axis = figure.subplots()
     for way, colour in STYLES.items():
@@ -217,7 +218,7 @@ def plot_random(rows: Sequence[dict], path: Path) -> None:
     axis.set_yscale("symlog", linthresh=1e-5)
     axis.set_xlabel("scenes, %")
     axis.set_ylabel("deviation from white")
-    axis.set_title(f"{len(rows)} random scenes in a furnace")
+    axis.set_title(f"{len(rows)} random scenes of sharp media in a furnace")
     axis.grid(alpha=0.3)
     axis.legend()
     figure.savefig(path, dpi=100)
@@ -236,6 +237,7 @@ def plot_far(tables: dict[str, dict[str, dict]], path: Path) -> None:
                 axis.plot(*zip(*points), color=colour, marker=".", label=LABELS[way])
         axis.set_xscale("log")
         axis.set_yscale("symlog", linthresh=1e-5)
+        axis.set_ylim(min(axis.get_ylim()[0], -1e-4), max(axis.get_ylim()[1], 1e-4))
         axis.set_xlabel(FAR[table])
         axis.grid(alpha=0.3)
     figure.axes[0].set_ylabel("deviation from white")
