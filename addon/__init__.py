@@ -11,11 +11,14 @@
 """
 
 import sys
+from contextlib import nullcontext
 
 from .model.files import ending_at_once
+from .model.streams import log_to_stderr
 
 if "bpy" not in sys.modules:
-    with ending_at_once():  # which Blender's start would swallow
+    # What Blender's start would swallow, and what it prints where others are to read JSON.
+    with ending_at_once(), log_to_stderr() if "--json" in sys.argv else nullcontext():
         import bpy  # noqa: F401
 
 from .analysis.surroundings import clear_analysis

@@ -7,7 +7,7 @@ import io
 import json
 import os
 import sys
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from pathlib import Path
 
 import bpy
@@ -25,6 +25,7 @@ from .model.parameters import BY_KEYWORD
 from .model.spectra import WAVELENGTHS
 from .model.spectral_tables import spectral_table
 from .model.spectrum_plots import plot
+from .model.streams import log_to_stderr
 from .nodes.compatibility import require_blender
 from .nodes.render_with import OSL
 from .nodes.working_space import working_gamut
@@ -122,17 +123,18 @@ def run_check(options: argparse.Namespace) -> int:
     """
     if options.fix and options.output is None:
         raise Failure("--fix needs a file to write: name it with --output")
-    _open(options.file)
-    changes = {scene.name: list(fix_all(scene).changes) if options.fix else [] for scene in bpy.data.scenes}
-    findings = {scene.name: check(scene) for scene in bpy.data.scenes}
-    saved = save_blend(options.output) if options.fix else None
-    if options.json:
-        print(_as_json(findings, changes, saved))
-    else:
-        for name, found in findings.items():
-            print("\n".join(_in_lines(name, found, changes[name])))
-        if saved:
-            print(f"wrote {saved}")
+    with log_to_stderr() if options.json else nullcontext(sys.stdout) as output:
+        _open(options.file)
+        changes = {scene.name: list(fix_all(scene).changes) if options.fix else [] for scene in bpy.data.scenes}
+        findings = {scene.name: check(scene) for scene in bpy.data.scenes}
+        saved = save_blend(options.output) if options.fix else None
+        if options.json:
+            print(_as_json(findings, changes, saved), file=output, flush=True)
+        else:
+            for name, found in findings.items():
+                print("\n".join(_in_lines(name, found, changes[name])))
+            if saved:
+                print(f"wrote {saved}")
     counts = {Severity.WRONG, Severity.SLOW} if options.strict else {Severity.WRONG}
     return FOUND if any(each.severity in counts for found in findings.values() for each in found) else 0
 

@@ -3,7 +3,7 @@
 import bpy  # before bmesh, which lives inside it
 import pytest
 from faults import UNIT, glass, kinds, mend
-from scenes import add_box, add_sphere, empty_file
+from scenes import add_box, add_sphere, new_scene
 
 import nested_dielectric as nd
 from nested_dielectric.checking.finding import Action
@@ -14,7 +14,7 @@ from nested_dielectric.scene.media import get_priority
 
 @pytest.fixture(autouse=True)
 def scene():
-    empty_file(with_group=True)
+    new_scene(with_group=True)
     return bpy.context.scene
 
 
@@ -43,8 +43,8 @@ def test_priorities_of_objects_and_materials_are_set():
 
 def test_settings_are_set_and_put_back_takes_them_back(scene):
     for path, value, words in (
-        ("cycles.max_bounces", 64, "Max Bounces: 12 -> 64"),
-        ("render.engine", "CYCLES", "Render Engine: EEVEE -> Cycles"),
+        ("cycles.max_bounces", 64, "Max Bounces: 256 -> 64"),
+        ("render.engine", "BLENDER_EEVEE", "Render Engine: Cycles -> EEVEE"),
         ("render.use_motion_blur", True, "Motion Blur: off -> on"),
         ("render.use_simplify", True, "Use Simplify: off -> on"),
     ):

@@ -18,7 +18,7 @@ from faults import (
     volume,
 )
 from mathutils import Vector
-from scenes import add, add_box, add_mesh, add_plane, empty_file
+from scenes import add, add_box, add_mesh, add_plane, new_scene
 
 import nested_dielectric as nd
 from nested_dielectric.checking.finding import Action
@@ -26,7 +26,7 @@ from nested_dielectric.checking.finding import Action
 
 @pytest.fixture(autouse=True)
 def scene():
-    empty_file(with_group=True)
+    new_scene(with_group=True)
     return bpy.context.scene
 
 

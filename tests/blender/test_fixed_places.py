@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from faults import SIDES, UNIT, glass, hollow, kinds, mend, vessel, volume, world_points
 from mathutils import Vector
-from scenes import add, add_box, add_camera, add_mesh, diffuse, empty_file, mostly_again
+from scenes import add, add_box, add_camera, add_mesh, diffuse, mostly_again, new_scene
 
 import nested_dielectric as nd
 from nested_dielectric.analysis.mesh_modifiers import is_offset
@@ -16,7 +16,7 @@ from nested_dielectric.preparation.prepare_scene import put_back
 
 @pytest.fixture(autouse=True)
 def scene():
-    empty_file(with_group=True)
+    new_scene(with_group=True)
     return bpy.context.scene
 
 

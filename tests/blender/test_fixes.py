@@ -5,7 +5,7 @@ import bpy  # before bmesh, which lives inside it
 import bmesh  # isort: skip
 import pytest
 from faults import UNIT, fault_of, flip, glass, mend, open_up, state, volume, with_fixes
-from scenes import add, add_box, add_plane, empty_file, mostly_again
+from scenes import add, add_box, add_plane, mostly_again, new_scene
 
 import nested_dielectric as nd
 from nested_dielectric.analysis.validity import is_analysed
@@ -20,7 +20,7 @@ from nested_dielectric.ui.operators import problem_operators
 
 @pytest.fixture(autouse=True)
 def scene():
-    empty_file(with_group=True)
+    new_scene(with_group=True)
     return bpy.context.scene
 
 
@@ -38,6 +38,7 @@ def test_each_action_has_a_function_and_words_and_those_that_need_names_refuse_n
 
 def test_a_scene_is_prepared(scene):
     add_box("Box", *UNIT, glass())
+    scene.render.engine = "BLENDER_EEVEE"
     assert "Render Engine: EEVEE -> Cycles" in mend(Action.PREPARE, scene.name, kind="settings")
     assert is_analysed(scene)
 
@@ -47,7 +48,7 @@ def test_what_is_linked_is_never_changed(tmp_path, scene):
     open_up(box, 1)
     path = str(tmp_path / "library.blend")
     bpy.data.libraries.write(path, {box})
-    empty_file(with_group=True)
+    new_scene(with_group=True)
     scene = bpy.context.scene
     with bpy.data.libraries.load(path, link=True) as (_, wanted):
         wanted.objects = ["Box"]
