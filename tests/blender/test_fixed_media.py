@@ -50,7 +50,7 @@ def test_settings_are_set_and_put_back_takes_them_back(scene):
     ):
         assert mend(Action.SET_SETTING, scene.name, value=value, path=path) == [words]
         assert mend(Action.SET_SETTING, scene.name, value=value, path=path) == []
-    assert {"Max Bounces: 64 -> 12", "Render Engine: Cycles -> EEVEE"} <= {*put_back(scene)}
+    assert {"Max Bounces: 64 -> 256", "Render Engine: EEVEE -> Cycles"} <= {*put_back(scene)}
     for path, value, said in (
         ("render.filepath", "/tmp/x", "is no setting of how a scene renders"),
         ("world.name", "x", "is no setting"),

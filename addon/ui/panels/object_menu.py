@@ -14,6 +14,7 @@ from ..operators.dispersion_operators import DispersionModel, SellmeierIor, Spec
 from ..operators.light_operators import AddPasses, LightCarrier, ShadowCaustics
 from ..operators.preparation_operators import ClearAnalysis, CutSurfaces, KeepCut, Prepare, PutBack, RenderWith
 from ..operators.priority_operators import PriorityMove, PriorityOwn, SelectObjects, SpaceOut
+from ..operators.problem_operators import Check, FixAll
 from ..operators.suggestion_operators import SuggestPriorities
 from ..operators.update_operators import UpdateMaterials
 from ..preferences import FIT, MEASURED
@@ -51,6 +52,8 @@ class ObjectMenu(bpy.types.Menu):
         layout.operator(SelectObjects.bl_idname, text="Select Objects of Medium")
         layout.separator()
         layout.operator(Prepare.bl_idname)
+        layout.operator(Check.bl_idname)
+        layout.operator(FixAll.bl_idname, text="Fix All Problems")
         layout.operator_menu_enum(RenderWith.bl_idname, "backend")
         layout.operator(CutSurfaces.bl_idname)
         layout.operator(KeepCut.bl_idname, text="Keep Cut in File")
