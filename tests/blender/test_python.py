@@ -300,4 +300,5 @@ def test_the_shader_takes_exactly_the_tables_parameters():
         "TableMeans",
         "Weight",
         "Wavelength",
+        "View",
     ]
