@@ -15,6 +15,7 @@ from ..analysis.solid_cache import EvaluatedMesh, mesh_of
 from ..geometry import contacts
 from ..geometry.contacts import Contact, PairCache, place_key
 from ..geometry.solids import Body, PlacedSolid
+from ..scene.materials import medium_material
 from ..scene.media import SOLID_TYPES, get_priority, is_cut_surface, is_rendered, media
 from ..scene.shapes import evaluated_faces
 from .evaluated_shapes import Containment, Shape, evaluated_shape
@@ -129,7 +130,7 @@ class Inspection:
             obj = instance.object
             if (
                 obj.type not in SOLID_TYPES
-                or obj.original in self.among
+                or medium_material(obj.original) is not None
                 or obj.original.hide_render
                 or is_cut_surface(obj)
             ):

@@ -4,6 +4,7 @@ import json
 
 import bpy
 import pytest
+import structures
 from nested_balls import build_scene
 from scenes import add_camera, add_sphere, new_scene
 
@@ -158,3 +159,9 @@ def test_a_check_changes_nothing():
     before = state()
     assert nd.check(scene)
     assert state() == before
+
+
+def test_media_that_nodes_alone_instance_are_no_foreign_objects():
+    scene = structures.droplets(8, True, "nodes")
+    kinds = {finding.kind.key for finding in nd.check(scene)}
+    assert not kinds & {"foreign-coincident", "foreign-inside", "foreign-across"}
