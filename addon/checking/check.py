@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 
 import bpy
+import numpy as np
+from mathutils import Vector
 
 from ..analysis import solid_cache
 from ..nodes.lookups import caching_nodes
@@ -61,4 +64,17 @@ def check(scene: bpy.types.Scene) -> list[Finding]:
 @caching_nodes()
 def find(inspection: Inspection) -> list[Finding]:
     """Return what is wrong with a scene that is being looked at, the worst first."""
-    return severe([finding for each in CHECKS for finding in each(inspection)])
+    return severe([_placed(inspection, finding) for each in CHECKS for finding in each(inspection)])
+
+
+def _placed(inspection: Inspection, finding: Finding) -> Finding:
+    """Return a finding with a point: amid the object that it is about, unless it has one or concerns more."""
+    if finding.place.point is not None:
+        return finding
+    obj = inspection.scene.objects.get(finding.name)
+    if obj is None:
+        return finding
+    evaluated = obj.evaluated_get(inspection.depsgraph)
+    centre = sum((Vector(corner) for corner in evaluated.bound_box), Vector()) / 8.0
+    point = evaluated.matrix_world @ (centre if np.isfinite(centre).all() else Vector())
+    return replace(finding, place=replace(finding.place, point=tuple(point)))
