@@ -18,13 +18,6 @@ float hit_distance(output float t)
   return distance;
 }
 
-/* Whether the shaded object ends again so near behind the surface that single precision cannot tell both of its sides apart. */
-int ends_at_once(vector inward)
-{
-  float spacing = FLOAT_SPACING * max(abs(P[0]), max(abs(P[1]), abs(P[2])));
-  return trace(P, inward, "maxdist", PRECISION_LIMIT * spacing, "traceset", "__only_local__");
-}
-
 /* Whether the surface hit last is cut where media cross. All that it meets is cut with it, so it surrounds nothing that asks. */
 int hit_is_cut()
 {
@@ -52,4 +45,12 @@ int crossing_sign(vector direction)
   if (side == 0.0) /* a ray without differentials */
     side = -dot(cross(e1, e2), direction);
   return (side < 0.0) ? 1 : -1;
+}
+
+/* Whether the shaded object ends again so near behind the surface that single precision cannot tell both of its sides apart.
+ * What lies on the surface itself, as faces that are there twice, ends nothing. */
+int ends_at_once(vector inward)
+{
+  float spacing = FLOAT_SPACING * max(abs(P[0]), max(abs(P[1]), abs(P[2])));
+  return trace(P, inward, "mindist", 4.0 * spacing, "maxdist", PRECISION_LIMIT * spacing, "traceset", "__only_local__");
 }
