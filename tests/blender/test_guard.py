@@ -11,7 +11,8 @@ import nested_dielectric as nd
 from nested_dielectric.analysis import surroundings
 from nested_dielectric.analysis.validity import validity_of
 from nested_dielectric.cutting import views
-from nested_dielectric.preparation import guard, idle, render_handlers, scripts
+from nested_dielectric.preparation import guard, idle, render_handlers
+from nested_dielectric.scene import scripts
 from nested_dielectric.ui.panels import notices, scene_panels
 from nested_dielectric.ui.presets import dropped
 

@@ -9,7 +9,7 @@ from scenes import add, add_box, add_point_light, add_sphere, new_scene
 from storms import raised_by_handlers
 
 import nested_dielectric as nd
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 from nested_dielectric.cutting.baked_cut import delete_bake
 from nested_dielectric.cutting.cut_collection import find_collection, surfaces_of
 from nested_dielectric.cutting.cutter import cutter_of

@@ -10,7 +10,7 @@ from storms import raised_by_handlers
 
 import nested_dielectric as nd
 from nested_dielectric.analysis.surroundings import clear_analysis
-from nested_dielectric.checking.check import find_problems
+from nested_dielectric.checking.check import check as find_problems
 from nested_dielectric.model.spectral_tables import spectral_table
 from nested_dielectric.nodes.material_version import find_group
 from nested_dielectric.nodes.spectral_tables import uses_table
