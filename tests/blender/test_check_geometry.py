@@ -47,10 +47,11 @@ def vessel(gap: float, priority: int = 1) -> tuple[bpy.types.Object, bpy.types.O
 def test_a_hole_is_found_with_the_faces_around_it_and_can_be_closed():
     new_scene(8, with_group=True)
     obj = ball(location=(3, 0, 0))
+    edges = len(obj.data.polygons[40].vertices)  # Blenders number faces differently
     ring = [face.index for face in obj.data.polygons if set(face.vertices) & set(obj.data.polygons[40].vertices)]
     edit(obj, lambda bm: bmesh.ops.delete(bm, geom=[bm.faces[40]], context="FACES_ONLY"))
     found = only(kinds.OPEN_MESH)
-    assert len(found.place.faces) == 4 and {face + (face >= 40) for face in found.place.faces} <= set(ring)
+    assert len(found.place.faces) == edges and {face + (face >= 40) for face in found.place.faces} <= set(ring)
     assert min(np.linalg.norm(middle_of(obj, f) - found.place.point) for f in found.place.faces) < 0.1
     assert found.fix.action == Action.CLOSE_HOLES and found.fix.names == ("Ball",) and found.fix.safe
 
