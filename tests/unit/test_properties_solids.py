@@ -255,7 +255,7 @@ def test_what_rests_on_a_box_is_what_shares_part_of_its_top_or_another_side(stan
     """Boxes on a lattice share part of a plane or are apart by more than any tolerance."""
     ends = [(each.vertices.min(axis=0), each.vertices.max(axis=0)) for each in standing]
     expected = [number for number, (low, high) in enumerate(ends) if share_a_side(low, high, foreign)]
-    assert resting_surfaces(standing, foreign) == expected
+    assert list(resting_surfaces([PlacedSolid(each, np.eye(4)) for each in standing], foreign)) == expected
 
 
 def share_a_side(low: np.ndarray, high: np.ndarray, other: Solid) -> bool:
