@@ -48,9 +48,11 @@ int crossing_sign(vector direction)
 }
 
 /* Whether the shaded object ends again so near behind the surface that single precision cannot tell both of its sides apart.
- * What lies on the surface itself, as faces that are there twice, ends nothing. */
+ * What lies on the surface itself, as faces that are there twice, ends nothing, nor does the other side of an edge. */
 int ends_at_once(vector inward)
 {
   float spacing = FLOAT_SPACING * max(abs(P[0]), max(abs(P[1]), abs(P[2])));
-  return trace(P, inward, "mindist", 4.0 * spacing, "maxdist", PRECISION_LIMIT * spacing, "traceset", "__only_local__");
+  normal across = normal(0.0);
+  return trace(P, inward, "mindist", 4.0 * spacing, "maxdist", PRECISION_LIMIT * spacing, "traceset", "__only_local__") &&
+         getmessage("trace", "Ng", across) && abs(dot(across, inward)) > 0.9;
 }
