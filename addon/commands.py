@@ -157,7 +157,7 @@ def _as_json(findings: dict[str, list[Finding]], changes: dict[str, list[str]], 
 
 def _in_lines(scene: str, found: list[Finding], changes: list[str]) -> list[str]:
     """Return what ``check`` has found in a scene as lines of text."""
-    lines = [f"{scene}: {headline_of(found)}", *(f"changed: {change}" for change in changes)]
+    lines = [f"{scene}: {_headline(found)}", *(f"changed: {change}" for change in changes)]
     for finding in found:
         lines += [f"{finding.severity}: {finding}", f"  shows: {finding.shows}"]
         if finding.place.point is not None:
@@ -165,7 +165,7 @@ def _in_lines(scene: str, found: list[Finding], changes: list[str]) -> list[str]
     return lines
 
 
-def headline_of(found: list[Finding]) -> str:
+def _headline(found: list[Finding]) -> str:
     """Return in one line how much of each severity was found."""
     counts = {severity: sum(finding.severity == severity for finding in found) for severity in Severity}
     return ", ".join(f"{count} {severity}" for severity, count in counts.items() if count) or "nothing is wrong"

@@ -12,12 +12,16 @@ from .report import keep_findings, last_report
 
 
 def check_and_keep(scene: bpy.types.Scene) -> list[Finding]:
-    """Check a scene, and keep what was found for its panel; return it, the worst first.
+    """Check a scene, and keep what was found for its panel; return it, the worst first."""
+    return keep(scene, check(scene))
+
+
+def keep(scene: bpy.types.Scene, found: list[Finding]) -> list[Finding]:
+    """Keep what a check of a scene has just found for its panel; return what is kept, the worst first.
 
     Spectral tables that could not be baked stay as the last preparation said.
     """
     report = last_report(scene)
-    found = check(scene)
     if report is not None:
         found = severe(found + [each for each in report.problems if each.kind == SPECTRAL_TABLE])
     keep_findings(scene, len(media(scene)), found)

@@ -6,6 +6,7 @@ import bmesh  # isort: skip
 import numpy as np
 import pytest
 from checked import ball, findings, middle_of, only
+from faults import edit
 from object_types import curve, text
 from same_place import block, duplicate
 from scenes import (
@@ -19,15 +20,6 @@ from scenes import (
 import nested_dielectric as nd
 from nested_dielectric.checking import kinds
 from nested_dielectric.checking.finding import Action
-
-
-def edit(obj: bpy.types.Object, change) -> None:
-    bm = bmesh.new()
-    bm.from_mesh(obj.data)
-    bm.faces.ensure_lookup_table()
-    change(bm)
-    bm.to_mesh(obj.data)
-    bm.free()
 
 
 def vessel(gap: float, priority: int = 1) -> tuple[bpy.types.Object, bpy.types.Object]:

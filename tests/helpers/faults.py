@@ -34,7 +34,8 @@ def glass(ior: float = 1.5) -> bpy.types.Material:
     return nd.new_material("Glass", ior=ior)
 
 
-def _edit(obj: bpy.types.Object, change: Callable[[bmesh.types.BMesh], None]) -> None:
+def edit(obj: bpy.types.Object, change: Callable[[bmesh.types.BMesh], None]) -> None:
+    """Change an object's mesh."""
     bm = bmesh.new()
     bm.from_mesh(obj.data)
     bm.faces.ensure_lookup_table()
@@ -45,7 +46,7 @@ def _edit(obj: bpy.types.Object, change: Callable[[bmesh.types.BMesh], None]) ->
 
 def flip(obj: bpy.types.Object, faces=None) -> None:
     """Turn faces of an object's mesh around, all if none are given."""
-    _edit(
+    edit(
         obj,
         lambda bm: bmesh.ops.reverse_faces(bm, faces=list(bm.faces) if faces is None else [bm.faces[i] for i in faces]),
     )
@@ -53,7 +54,7 @@ def flip(obj: bpy.types.Object, faces=None) -> None:
 
 def open_up(obj: bpy.types.Object, *faces: int) -> None:
     """Remove faces of an object's mesh."""
-    _edit(obj, lambda bm: bmesh.ops.delete(bm, geom=[bm.faces[index] for index in faces], context="FACES_ONLY"))
+    edit(obj, lambda bm: bmesh.ops.delete(bm, geom=[bm.faces[index] for index in faces], context="FACES_ONLY"))
 
 
 def hollow(bm: bmesh.types.BMesh) -> None:

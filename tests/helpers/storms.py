@@ -69,19 +69,20 @@ def press(chance: random.Random) -> str:
 
 
 def undo(chance: random.Random) -> str:
-    count = chance.randrange(1, 4)
-    for _ in range(count):
-        if bpy.ops.ed.undo.poll():
-            bpy.ops.ed.undo()
-    return f"undo {count}"
+    return several_times(chance, "undo")
 
 
 def redo(chance: random.Random) -> str:
-    count = chance.randrange(1, 4)
+    return several_times(chance, "redo")
+
+
+def several_times(chance: random.Random, name: str) -> str:
+    """Undo or redo one to three steps, as far as there are any."""
+    operator, count = getattr(bpy.ops.ed, name), chance.randrange(1, 4)
     for _ in range(count):
-        if bpy.ops.ed.redo.poll():
-            bpy.ops.ed.redo()
-    return f"redo {count}"
+        if operator.poll():
+            operator()
+    return f"{name} {count}"
 
 
 def change(chance: random.Random) -> str:

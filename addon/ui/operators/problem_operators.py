@@ -10,7 +10,7 @@ from ...fixing.fix import Fixed, fix, fix_all
 from ...fixing.kept import as_it_is_now
 from ...fixing.words import in_words
 from ...model.parameter import ParameterError
-from ...preparation.check_scene import check_and_keep
+from ...preparation.check_scene import check_and_keep, keep
 from ...preparation.report import last_report
 from ...scene.media import all_objects
 from ..polls import in_object_mode
@@ -118,7 +118,7 @@ class FixAll(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         fixed = fix_all(context.scene)
-        found = check_and_keep(context.scene)
+        found = keep(context.scene, list(fixed.left))
         self._say(Fixed(fixed.changes, tuple(found)))
         return {"FINISHED"}
 
