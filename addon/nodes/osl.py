@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -76,13 +78,25 @@ def add_script(
     """
     node = tree.nodes.new("ShaderNodeScript")
     node.name = node.label = name
-    node.mode = "INTERNAL"
-    node.script = script.text()
+    with _temporary_files_removed():
+        node.mode = "INTERNAL"
+        node.script = script.text()
     set_bytecode(node, script.bytecode)
     for sockets, kinds in ((node.inputs, inputs), (node.outputs, outputs)):
         for socket, kind in kinds.items():
             _ensure_socket(sockets, kind, socket)
     return node
+
+
+@contextmanager
+def _temporary_files_removed() -> Iterator[None]:
+    """Remove what Python makes as temporary files: Cycles compiles a script that it is given, and leaves the result there."""
+    with ExitStack() as undo:
+        usual = tempfile.tempdir
+        with suppress(OSError):
+            tempfile.tempdir = undo.enter_context(tempfile.TemporaryDirectory(ignore_cleanup_errors=True))
+        undo.callback(setattr, tempfile, "tempdir", usual)
+        yield
 
 
 def set_bytecode(node: bpy.types.ShaderNodeScript, bytecode: str) -> None:

@@ -1,5 +1,9 @@
 """A nested dielectric is found wherever an artist puts its node, or named with the remedy."""
 
+import os
+import subprocess
+import sys
+
 import bpy
 import pytest
 from places_of_nodes import GROUP, duplicated, grouped, output_of, plug, renamed, twice_grouped
@@ -265,3 +269,27 @@ def test_what_changes_in_nodes_of_a_prepared_scene_is_read_at_once():
         assert problems() == []
     finally:
         nd.unregister()
+
+
+MADE_WITH_OSLQUERY = """
+import sys, tempfile
+import bpy
+from pathlib import Path
+sys.path[:0] = map(str, Path(bpy.utils.resource_path("LOCAL")).glob("python/lib/*/site-packages"))
+import oslquery  # or Cycles compiles no script that it is given
+import nested_dielectric as nd
+bpy.context.scene.render.engine = "CYCLES"
+nd.new_material("Glass")
+print(sorted(path.name for path in Path(tempfile.gettempdir()).iterdir() if path.suffix in (".osl", ".oso")))
+"""
+
+
+def test_a_new_material_leaves_no_compiled_shader_among_the_temporary_files(tmp_path):
+    done = subprocess.run(
+        [sys.executable, "-c", MADE_WITH_OSLQUERY],
+        env=os.environ | {"TMPDIR": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.splitlines()[-1] == "[]"
