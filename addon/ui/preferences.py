@@ -1,12 +1,11 @@
 """What users may choose for all files."""
 
-import tomllib
-from functools import cache
 from typing import Any
 
 import bpy
 
-from ..model.folders import PACKAGE, ROOT
+from ..model.folders import PACKAGE
+from ..model.manifest import manifest
 from ..scene.preset_library import user_folder
 from . import asset_library
 
@@ -62,7 +61,7 @@ class Preferences(bpy.types.AddonPreferences):
         row.enabled = asset_library.is_there()
         row.prop(self, "asset_library")
         row = layout.row()
-        row.operator("wm.url_open", text="Manual", icon="HELP").url = website()
+        row.operator("wm.url_open", text="Manual", icon="HELP").url = manifest()["website"]
         folder = row.row()
         folder.enabled = user_folder().is_dir()
         folder.operator("wm.path_open", text="Open My Presets", icon="FILE_FOLDER").filepath = str(user_folder())
@@ -74,13 +73,6 @@ def preference(name: str) -> Any:
     if addon is not None and addon.preferences is not None:
         return getattr(addon.preferences, name)
     return Preferences.bl_rna.properties[name].default
-
-
-@cache
-def website() -> str:
-    """Return the address of the manual, as the extension's manifest has it."""
-    manifest = ROOT / "blender_manifest.toml"
-    return tomllib.loads(manifest.read_text(encoding="utf-8"))["website"]
 
 
 CLASSES = (Preferences,)

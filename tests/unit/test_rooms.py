@@ -22,6 +22,8 @@ ROOMS = (
     "importers",
     "demo",
     "ui",
+    "farm",
+    "commands",
     "",
 )
 """From the ground up; the last is the package's own folder."""

@@ -1,0 +1,90 @@
+"""``check``: what is wrong with a file, and what mends it."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from contextlib import nullcontext
+from pathlib import Path
+
+import bpy
+
+from ..checking.check import check
+from ..checking.finding import Finding, to_json
+from ..checking.kinds import Severity
+from ..fixing.fix import fix_all
+from ..model.streams import log_to_stderr
+from ..scene.output import save_blend
+from .shared import AddParser, Failure, add_file, blend_name, open_file
+
+CHECK_SCHEMA = 1
+"""Version of the JSON that ``check`` writes; it is counted on when a key changes its meaning or goes."""
+
+FOUND = 3
+"""Exit code of ``check`` where something is wrong."""
+
+
+def add_command(add_parser: AddParser) -> None:
+    check = add_parser("check", help="say what is wrong with the media of a .blend, where, and what would mend it")
+    add_file(check)
+    check.add_argument("--json", action="store_true", help="write it as JSON")
+    check.add_argument("--strict", action="store_true", help="take what is slow for wrong, too")
+    check.add_argument("--fix", action="store_true", help="mend what can be mended safely, and save that as OUT.blend")
+    check.add_argument("-o", "--output", type=blend_name, metavar="OUT.blend", help="file to write, with --fix")
+    check.set_defaults(run=_run)
+
+
+def _run(options: argparse.Namespace) -> int:
+    """Say what is wrong with the media of all scenes of a file, and with ``--fix`` mend what is safe and save it.
+
+    :returns: 0, or :data:`FOUND` where pictures would be wrong; with ``--strict`` also where they would be slow.
+    """
+    if options.fix and options.output is None:
+        raise Failure("--fix needs a file to write: name it with --output")
+    with log_to_stderr() if options.json else nullcontext(sys.stdout) as output:
+        open_file(options.file)
+        changes = {scene.name: list(fix_all(scene).changes) if options.fix else [] for scene in bpy.data.scenes}
+        findings = {scene.name: check(scene) for scene in bpy.data.scenes}
+        saved = save_blend(options.output) if options.fix else None
+        if options.json:
+            print(_as_json(findings, changes, saved), file=output, flush=True)
+        else:
+            for name, found in findings.items():
+                print("\n".join(_in_lines(name, found, changes[name])))
+            if saved:
+                print(f"wrote {saved}")
+    counts = {Severity.WRONG, Severity.SLOW} if options.strict else {Severity.WRONG}
+    return FOUND if any(each.severity in counts for found in findings.values() for each in found) else 0
+
+
+def _as_json(findings: dict[str, list[Finding]], changes: dict[str, list[str]], saved: Path | None) -> str:
+    """Return what ``check`` has found as JSON."""
+    scenes = [
+        {"scene": name, "findings": list(map(to_json, found)), "changes": changes[name]}
+        for name, found in findings.items()
+    ]
+    report = {
+        "schema": CHECK_SCHEMA,
+        "file": bpy.data.filepath,
+        "blender": bpy.app.version_string,
+        "saved": None if saved is None else str(saved),
+        "scenes": scenes,
+    }
+    return json.dumps(report, indent=2, ensure_ascii=False)
+
+
+def _in_lines(scene: str, found: list[Finding], changes: list[str]) -> list[str]:
+    """Return what ``check`` has found in a scene as lines of text."""
+    lines = [f"{scene}: {_headline(found)}", *(f"changed: {change}" for change in changes)]
+    for finding in found:
+        lines += [f"{finding.severity}: {finding}", f"  shows: {finding.shows}"]
+        if finding.place.point is not None:
+            lines.append("  at: " + ", ".join(f"{x:.6g}" for x in finding.place.point))
+    return lines
+
+
+def _headline(found: list[Finding]) -> str:
+    """Return in one line how much of each severity was found."""
+    counts = {severity: sum(finding.severity == severity for finding in found) for severity in Severity}
+    return ", ".join(f"{count} {severity}" for severity, count in counts.items() if count) or "nothing is wrong"

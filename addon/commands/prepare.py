@@ -1,0 +1,57 @@
+"""``prepare`` and ``update``: a file, saved with what it needs."""
+
+from __future__ import annotations
+
+import argparse
+
+import bpy
+
+from ..preparation.live import bake_cut
+from ..preparation.prepare_scene import prepare
+from ..preparation.versions import update_materials
+from ..scene.output import save_blend
+from .shared import AddParser, add_backend, add_file, add_saved, open_file
+
+
+def add_prepare(add_parser: AddParser) -> None:
+    preparation = add_parser("prepare", help="set what a .blend needs, list problems, and save it")
+    add_file(preparation)
+    add_saved(preparation)
+    preparation.add_argument(
+        "--cut",
+        action=argparse.BooleanOptionalAction,
+        help="let renders of the file show surfaces cut where media cross, that of its frame kept in the file for farms; or "
+        "not (default: as the file has it)",
+    )
+    add_backend(preparation)
+    preparation.set_defaults(run=_prepare)
+
+
+def _prepare(options: argparse.Namespace) -> None:
+    """Prepare a file and save it."""
+    scene = open_file(options.file)
+    print(prepare(scene, options.cut, options.backend))
+    if options.cut:
+        hindrance = bake_cut(scene)
+        print(
+            f"each frame is cut as it is rendered: {hindrance}"
+            if hindrance
+            else f"the cut of frame {scene.frame_current} is in the file"
+        )
+    print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
+
+
+def add_update(add_parser: AddParser) -> None:
+    update = add_parser("update", help="bring a .blend's materials to this version of the extension, and save it")
+    add_file(update)
+    add_saved(update)
+    update.set_defaults(run=_update)
+
+
+def _update(options: argparse.Namespace) -> None:
+    """Bring a file's materials to this version and save it."""
+    open_file(options.file)
+    changes = update_materials()
+    print("\n".join(changes) or "nothing to change")
+    if changes or options.output:
+        print(f"wrote {save_blend(options.output or bpy.data.filepath)}")

@@ -1,0 +1,1 @@
+"""Files and jobs for other machines."""
