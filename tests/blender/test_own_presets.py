@@ -213,4 +213,3 @@ def test_the_users_folder_is_blenders_for_the_user_unless_the_preferences_name_a
     finally:
         bpy.context.preferences.addons.remove(addon)
     assert preferences.preference("depth") == "FIT"
-    assert preferences.website().startswith("https://")
