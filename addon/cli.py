@@ -18,7 +18,7 @@ from functools import partial
 import bpy
 
 from .commands import check, demo, import_jf, prepare, render, tables
-from .commands.shared import PROGRAM, Failure
+from .commands.shared import PROGRAM, Failure, one_line
 from .importers.jf_parameters import JfError
 from .model.colour_science import SpectrumError
 from .model.files import ending_at_once
@@ -59,9 +59,7 @@ def main(arguments: list[str] | None = None) -> int:
     except (Failure, JfError, ParameterError, SpectrumError, OSError, RuntimeError) as error:
         if options.traceback:
             traceback.print_exc()
-        named = isinstance(error, OSError) and error.filename
-        text = f"{error.filename}: {error.strerror}" if named else str(error).replace("Error: ", "")
-        print(f"{PROGRAM}: error: {' '.join(text.split())}", file=sys.stderr)
+        print(f"{PROGRAM}: error: {one_line(error)}", file=sys.stderr)
         return 1
     return code or 0
 

@@ -11,8 +11,10 @@ from ..demo.iced_water import build_scene
 from ..nodes.compatibility import require_blender
 from ..nodes.render_with import OSL
 from ..preparation.prepare_scene import prepare
+from ..scene.image_formats import file_format_of
 from ..scene.output import save_blend
-from ..scene.rendering import ProgressLine, file_format_of, render_frame, sampling_time
+from ..scene.progress import ProgressLine
+from ..scene.rendering import render_frame, sampling_time
 from .shared import AddParser, blend_name, file_name, positive
 
 OUTPUT = Path("out/iced_water.png")

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import bpy
 
 from ..model.files import absolute
+from ..model.manifest import manifest
+from ..model.streams import log_to_stderr
 from ..nodes.render_with import BACKENDS
+from ..preparation.guard import faults
 
 PROGRAM = "nested-dielectric"
 
@@ -21,9 +27,17 @@ class Failure(Exception):
     """A failure with its one line of explanation."""
 
 
-def open_file(file: Path | None) -> bpy.types.Scene:
+def one_line(error: Exception) -> str:
+    """Return in one line what went wrong."""
+    named = isinstance(error, OSError) and error.filename
+    text = f"{error.filename}: {error.strerror}" if named else str(error).replace("Error: ", "")
+    return " ".join(text.split())
+
+
+def open_file(file: Path | None, scene: str | None = None) -> bpy.types.Scene:
     """Open a file, or take the one that Blender has open, and return its scene.
 
+    :param scene: the name of one of its scenes; the one that it was saved with unless given.
     :raises Failure: if there is none.
     """
     if file is None:
@@ -36,7 +50,30 @@ def open_file(file: Path | None) -> bpy.types.Scene:
             bpy.ops.wm.open_mainfile(filepath=str(absolute(file)))
         except RuntimeError as error:
             raise Failure(f"{file}: {error}") from None
-    return bpy.context.scene
+    return bpy.context.scene if scene is None else _open_scene(scene)
+
+
+def _open_scene(name: str) -> bpy.types.Scene:
+    scene = named(bpy.data.scenes, name, "scene", "the file")
+    for window in bpy.context.window_manager.windows:
+        window.scene = scene
+    return scene
+
+
+def named(things: bpy.types.bpy_prop_collection, name: str, kind: str, owner: str) -> Any:
+    """Return what has a name.
+
+    :raises Failure: if there is none, with the names that there are.
+    """
+    thing = things.get(name)
+    if thing is None:
+        there = ", ".join(repr(each.name) for each in things) or "none"
+        raise Failure(f"{owner} has no {kind} {name!r}; there is: {there}")
+    return thing
+
+
+def add_scene(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--scene", metavar="S", help="scene of the file (default: the one that it was saved with)")
 
 
 def add_file(parser: argparse.ArgumentParser) -> None:
@@ -58,6 +95,54 @@ def add_backend(parser: argparse.ArgumentParser) -> None:
         choices=[choice.keyword for choice in BACKENDS],
         help="what renders media: Cycles' own nodes, the shader in OSL, or what fits best (default: as the file has it)",
     )
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="write what was done as JSON")
+
+
+@contextmanager
+def json_report(options: argparse.Namespace, schema: int) -> Iterator[dict[str, Any]]:
+    """Yield what a command has to report, to be added to; with ``--json`` it is written at the end.
+
+    It is all that the standard output then holds, and is written, too, if the block fails: the key ``error`` holds why, or
+    None. What else is printed goes to the standard error output.
+
+    :param schema: version of the report, to be counted on when a key changes its meaning or goes.
+    """
+    report: dict[str, Any] = {
+        "schema": schema,
+        "version": manifest()["version"],
+        "blender": bpy.app.version_string,
+        "file": bpy.data.filepath,
+        "error": None,
+    }
+    if not options.json:
+        yield report
+        return
+    with log_to_stderr() as output:
+        try:
+            yield report
+            if faults():
+                report["error"] = str(faults()[0])
+        except Exception as error:
+            report["error"] = one_line(error)
+            raise
+        finally:
+            report["file"] = bpy.data.filepath
+            print(json.dumps(report, indent=2, ensure_ascii=False), file=output, flush=True)
+
+
+def parsed(parse: Callable[[str], Any]) -> Callable[[str], Any]:
+    """Return a type of an option's value, from a function that raises ValueError in words for users."""
+
+    def convert(text: str) -> Any:
+        try:
+            return parse(text)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
+
+    return convert
 
 
 def file_name(text: str) -> Path:

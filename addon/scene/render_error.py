@@ -1,0 +1,5 @@
+"""What goes wrong with a render."""
+
+
+class RenderError(RuntimeError):
+    """A render that cannot be started, or that left no picture."""
