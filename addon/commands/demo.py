@@ -39,7 +39,10 @@ def _run(options: argparse.Namespace) -> None:
     print(prepare(scene, cut=True), flush=True)
     if options.save:
         save_blend(options.save)
-    print(render_frame(scene, options.output, options.samples, progress=ProgressLine()))
+    progress = ProgressLine()
+    picture = render_frame(scene, options.output, options.samples, progress=progress)
+    progress.end()
+    print(picture)
     print(_saving(scene))
 
 

@@ -3,70 +3,130 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
+from contextlib import ExitStack
+from typing import Any
 
-from ..model.frames import has_number, parse_frames, parse_samples, path_of_frame
-from ..preparation.prepare_scene import prepare
+import bpy
+
+from ..model.files import absolute, require_place
+from ..model.frames import has_number, path_of_frame
+from ..nodes.render_with import OSL
+from ..preparation.prepare_scene import Preparation, prepare
+from ..scene.chosen_view import cameras, layer_alone, through_camera
+from ..scene.devices import GPU, use_device
+from ..scene.frame_sequences import Frame, Rendered, State, is_there, line_of, number_of, render_frames, require_frames
 from ..scene.image_formats import file_format_of
+from ..scene.meanwhile import set_meanwhile
 from ..scene.progress import ProgressLine
-from ..scene.rendering import render_frame, require_picture
-from .shared import AddParser, Failure, add_backend, add_file, add_scene, file_name, open_file, parsed
+from .render_options import add_options
+from .shared import AddParser, Failure, json_report, named, open_file
+
+RENDER_SCHEMA = 1
+"""Version of the JSON that ``render`` writes; it is counted on when a key changes its meaning or goes."""
 
 
 def add_command(add_parser: AddParser) -> None:
     render = add_parser("render", help="prepare a .blend in memory and render frames of it")
-    add_file(render)
-    render.add_argument(
-        "-o",
-        "--output",
-        type=file_name,
-        required=True,
-        help="picture to write; its ending chooses the format, and #### in its name stands for the frame",
-    )
-    render.add_argument(
-        "--samples",
-        type=parsed(parse_samples),
-        metavar="N|A:B",
-        help="samples per pixel (default: the scene's); A:B renders the scene's from A up to B alone, to be merged",
-    )
-    frames = render.add_mutually_exclusive_group()
-    frames.add_argument("--frame", type=int, help="frame to render (default: the current one)")
-    frames.add_argument(
-        "--frames",
-        type=parsed(parse_frames),
-        metavar="LIST",
-        help="frames to render, such as 1-100,120,200-240:2; --frames=-5-5 where the first is negative",
-    )
-    add_scene(render)
-    render.add_argument(
-        "--no-cut",
-        action="store_true",
-        help="render media as they are; the default cuts their surfaces where they cross",
-    )
-    add_backend(render)
+    add_options(render)
     render.set_defaults(run=_run)
 
 
 def _run(options: argparse.Namespace) -> None:
     """Prepare a file in memory and render frames of it."""
-    file_format_of(options.output)
-    frames = _frames(options)
-    scene = open_file(options.file, options.scene)
-    require_picture(scene, options.output, options.samples)
-    print(prepare(scene, not options.no_cut, options.backend), flush=True)
-    for frame, path in frames:
-        print(render_frame(scene, path, options.samples, frame, ProgressLine()), flush=True)
+    with json_report(options, RENDER_SCHEMA) as report, ExitStack() as undo:
+        report |= {"scene": None, "problems": [], "frames": []}
+        frames = _frames(options)
+        order = [str(absolute(frame.path)) for frame in frames]
+        undo.callback(lambda: report["frames"].sort(key=lambda done: order.index(done["path"])))
+        _require_options(options, frames)
+        scene = open_file(options.file, options.scene)
+        report["scene"] = scene.name
+        _choose(scene, options, undo)
+        require_frames(scene, frames, options.samples)
+        there = [frame for frame in frames if options.skip_existing and is_there(scene, frame)]
+        if there:
+            print(f"{len(there)} of {len(frames)} frames are there already and are skipped", flush=True)
+            skipped = (Rendered(number_of(scene, frame), absolute(frame.path), State.SKIPPED) for frame in there)
+            report["frames"] += map(_as_json, skipped)
+        wanted = [frame for frame in frames if frame not in there]
+        if not wanted:
+            return
+        preparation = prepare(scene, not options.no_cut, options.backend)
+        report["problems"] += _problems(preparation)
+        print(preparation, flush=True)
+        _render(scene, wanted, options, report["frames"])
 
 
-def _frames(options: argparse.Namespace) -> list[tuple[int | None, Path]]:
-    """Return the frames to render, None for the current one, and their files.
+def _render(
+    scene: bpy.types.Scene, frames: list[Frame], options: argparse.Namespace, done: list[dict[str, Any]]
+) -> None:
+    """Render frames and say so of each; what is done is added to a list.
+
+    :raises Failure: if one fails.
+    """
+    progress = ProgressLine(len(frames))
+    numbered = options.frames is not None
+    for place, rendered in enumerate(render_frames(scene, frames, options.samples, progress, numbered), start=1):
+        done.append(_as_json(rendered))
+        if rendered.state == State.FAILED:
+            raise Failure(rendered.reason if progress.alone else f"frame {rendered.number}: {rendered.reason}")
+        print(rendered.path if progress.alone else line_of(rendered, place, len(frames)), flush=True)
+
+
+def _frames(options: argparse.Namespace) -> list[Frame]:
+    """Return the frames to render and their files.
 
     :raises Failure: if several frames had one file.
     """
     numbers = options.frames or (() if options.frame is None else (options.frame,))
     if not numbers:
-        return [(None, options.output)]
+        return [Frame(None, options.output)]
     if len(numbers) > 1 and not has_number(options.output):
         example = f"{options.output.stem}_####{options.output.suffix}"
         raise Failure(f"{options.output}: all frames would go to one file; put #### in its name, as in {example}")
-    return [(number, path_of_frame(options.output, number)) for number in numbers]
+    return [Frame(number, path_of_frame(options.output, number)) for number in numbers]
+
+
+def _require_options(options: argparse.Namespace, frames: list[Frame]) -> None:
+    """Make sure that options fit each other and that the files can be written, before any work."""
+    file_format_of(options.output)
+    if isinstance(options.samples, range) and options.time_limit is not None:
+        raise Failure("--time-limit would cut ranges of samples short; leave it out, or name a number of --samples")
+    if options.device == GPU and options.backend == OSL:
+        raise Failure("--backend osl renders on the CPU alone; leave --device gpu out, or choose another backend")
+    for frame in frames:
+        require_place(frame.path)
+
+
+def _choose(scene: bpy.types.Scene, options: argparse.Namespace, undo: ExitStack) -> None:
+    """Let a scene be rendered as the options say, and be afterwards as it was."""
+    if options.camera is not None:
+        camera = named(cameras(scene), options.camera, "camera", f"scene {scene.name!r}")
+        undo.enter_context(through_camera(scene, camera))
+    if options.view_layer is not None:
+        layer = named(scene.view_layers, options.view_layer, "view layer", f"scene {scene.name!r}")
+        undo.enter_context(layer_alone(scene, layer))
+    if options.time_limit is not None:
+        undo.enter_context(set_meanwhile(scene.cycles, time_limit=options.time_limit))
+    if options.device is not None:
+        undo.enter_context(set_meanwhile(scene.cycles, device=scene.cycles.device))
+        for gpu in use_device(scene, options.device):
+            print(f"renders on: {gpu}", flush=True)
+
+
+def _problems(preparation: Preparation) -> list[str]:
+    """Return what preparing a scene has left to be mended, in sentences."""
+    return [str(problem) for problem in preparation.problems]
+
+
+def _as_json(rendered: Rendered) -> dict[str, Any]:
+    """Return what became of a frame as JSON."""
+    values: dict[str, Any] = {
+        "frame": rendered.number,
+        "path": str(rendered.path),
+        "state": rendered.state,
+        "seconds": round(rendered.seconds, 3),
+    }
+    if rendered.reason:
+        values["reason"] = rendered.reason
+    return values

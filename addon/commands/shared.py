@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import json
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -60,14 +61,14 @@ def _open_scene(name: str) -> bpy.types.Scene:
     return scene
 
 
-def named(things: bpy.types.bpy_prop_collection, name: str, kind: str, owner: str) -> Any:
+def named(things: Mapping[str, Any] | bpy.types.bpy_prop_collection, name: str, kind: str, owner: str) -> Any:
     """Return what has a name.
 
     :raises Failure: if there is none, with the names that there are.
     """
     thing = things.get(name)
     if thing is None:
-        there = ", ".join(repr(each.name) for each in things) or "none"
+        there = ", ".join(repr(each) for each, _ in things.items()) or "none"
         raise Failure(f"{owner} has no {kind} {name!r}; there is: {there}")
     return thing
 
@@ -120,7 +121,7 @@ def json_report(options: argparse.Namespace, schema: int) -> Iterator[dict[str, 
     if not options.json:
         yield report
         return
-    with log_to_stderr() as output:
+    with log_to_stderr() as output, redirect_stdout(sys.stderr):
         try:
             yield report
             if faults():

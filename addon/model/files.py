@@ -70,6 +70,25 @@ def replacing_in(folder: Path | str) -> Iterator[Path]:
                 draft.settle(file, target)
 
 
+def require_place(path: Path | str) -> None:
+    """Make sure that a file can be written to a path; nothing is left behind.
+
+    :raises WriteError: if none can, as by :func:`replacing`.
+    """
+    target = absolute(path)
+    with _blaming(path), _draft(target.parent, target.suffix.lower()):
+        _require_writable(path, target)
+
+
+def require_folder(folder: Path | str) -> None:
+    """Make sure that files can be written to a folder, which may not be there yet; nothing is left behind.
+
+    :raises WriteError: if none can, as by :func:`replacing_in`.
+    """
+    with _blaming(folder), _draft(absolute(folder)):
+        pass
+
+
 def absolute(path: Path | str) -> Path:
     """Return where a path leads through links. Two slashes at its beginning would mean something else to Blender."""
     name = os.path.realpath(path)

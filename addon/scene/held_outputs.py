@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
+from typing import Any
 
 import bpy
 
-from ..model.files import WriteError, replacing_in
+from ..model.files import WriteError, replacing_in, require_folder
 from .meanwhile import set_meanwhile, set_path_meanwhile
 from .output import check_picture
 from .passes import file_outputs
@@ -16,15 +17,20 @@ from .render_error import RenderError
 
 
 @contextmanager
-def file_outputs_held_back(scene: bpy.types.Scene) -> Iterator[None]:
-    """Let what the compositor's File Output nodes write take its place when all of it is whole."""
+def file_outputs_held_back(scene: bpy.types.Scene, numbered: bool) -> Iterator[None]:
+    """Let what the compositor's File Output nodes write take its place when all of it is whole.
+
+    :param numbered: the files bear the frame's number, as Blender names those of animations.
+    """
     with ExitStack() as undo:
         held = []
         for node in file_outputs(scene):
-            folder = output_folder(scene, node)
+            folder = _folder(scene, node, scene.frame_current)
             if folder is not None:
                 draft = undo.enter_context(replacing_in(folder))
                 undo.enter_context(set_path_meanwhile(node, "directory", draft))
+                for owner, name in _unnumbered(node) if numbered else ():
+                    undo.enter_context(set_meanwhile(owner, **{name: f"{getattr(owner, name)}####"}))
                 held.append((node, folder, draft))
         yield
         for node, folder, draft in held:
@@ -35,13 +41,34 @@ def file_outputs_held_back(scene: bpy.types.Scene) -> Iterator[None]:
                 check_picture(file, folder / file.relative_to(draft))
 
 
-def output_folder(scene: bpy.types.Scene, node: bpy.types.CompositorNodeOutputFile) -> Path | None:
+def _unnumbered(node: bpy.types.CompositorNodeOutputFile) -> list[tuple[Any, str]]:
+    """Return the owners and names of the properties that name a node's files without a number."""
+    if "#" in node.file_name:
+        return []
+    if node.format.media_type == "MULTI_LAYER_IMAGE":
+        return [(node, "file_name")]
+    return [(item, "name") for item in node.file_output_items if "#" not in item.name]
+
+
+def require_output_folders(scene: bpy.types.Scene, frames: Iterable[int]) -> None:
+    """Make sure that File Output nodes can write what they will on some frames.
+
+    :raises RenderError: for a folder that Blender cannot name.
+    :raises WriteError: for one that no files can be written to.
+    """
+    frames = tuple(frames)
+    folders = {_folder(scene, node, frame) for node in file_outputs(scene) for frame in frames}
+    for folder in sorted(folders - {None}):
+        require_folder(folder)
+
+
+def _folder(scene: bpy.types.Scene, node: bpy.types.CompositorNodeOutputFile, frame: int) -> Path | None:
     """Return where a File Output node writes; None where its own name is part of that, which scenes cannot tell."""
     if "{node_name}" in node.directory:
         return None
     with set_meanwhile(scene.render, filepath=f"{node.directory}/x"):
         try:
-            return Path(scene.render.frame_path(frame=scene.frame_current)).parent
+            return Path(scene.render.frame_path(frame=frame)).parent
         except RuntimeError as error:
             text = " ".join(str(error).split()).removeprefix("Error: ")
             raise RenderError(f"{node.name!r} of the compositor: {text}") from None

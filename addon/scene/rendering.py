@@ -29,6 +29,7 @@ def render_frame(
     samples: int | range | None = None,
     frame: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    numbered: bool = False,
 ) -> Path:
     """Render one frame of a scene to a file and return its absolute path.
 
@@ -43,6 +44,7 @@ def render_frame(
         is a part of the picture that Cycles' merging puts together, in OpenEXR with all layers.
     :param frame: the frame; the current one unless given.
     :param progress: called with the samples done and to do.
+    :param numbered: files of File Output nodes bear the frame's number, as in animations.
     :raises RenderError: for an ending that no format has, a scene without a camera, numbers out of range, or a render
         that fails.
     :raises WriteError: for a file that cannot be written, before anything is rendered, or was not written whole.
@@ -54,7 +56,7 @@ def render_frame(
         if frame is not None:
             undo.callback(scene.frame_set, scene.frame_current, subframe=scene.frame_subframe)
             scene.frame_set(frame)
-        enter(file_outputs_held_back(scene))
+        enter(file_outputs_held_back(scene, numbered))
         draft = enter(replacing(output))
         if isinstance(samples, range):
             enter(rendering_part(scene, samples))
