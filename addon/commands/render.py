@@ -8,10 +8,11 @@ from typing import Any
 
 import bpy
 
+from ..checking.finding import to_json
 from ..model.files import absolute, require_place
 from ..model.frames import has_number, path_of_frame
 from ..nodes.render_with import OSL
-from ..preparation.prepare_scene import Preparation, prepare
+from ..preparation.prepare_scene import prepare
 from ..scene.chosen_view import cameras, layer_alone, through_camera
 from ..scene.devices import GPU, use_device
 from ..scene.frame_sequences import Frame, Rendered, State, is_there, line_of, number_of, render_frames, require_frames
@@ -34,7 +35,7 @@ def add_command(add_parser: AddParser) -> None:
 def _run(options: argparse.Namespace) -> None:
     """Prepare a file in memory and render frames of it."""
     with json_report(options, RENDER_SCHEMA) as report, ExitStack() as undo:
-        report |= {"scene": None, "problems": [], "frames": []}
+        report |= {"scene": None, "changes": [], "problems": [], "frames": []}
         frames = _frames(options)
         order = [str(absolute(frame.path)) for frame in frames]
         undo.callback(lambda: report["frames"].sort(key=lambda done: order.index(done["path"])))
@@ -52,7 +53,8 @@ def _run(options: argparse.Namespace) -> None:
         if not wanted:
             return
         preparation = prepare(scene, not options.no_cut, options.backend)
-        report["problems"] += _problems(preparation)
+        report["changes"] += preparation.changes
+        report["problems"] += map(to_json, preparation.problems)
         print(preparation, flush=True)
         _render(scene, wanted, options, report["frames"])
 
@@ -112,11 +114,6 @@ def _choose(scene: bpy.types.Scene, options: argparse.Namespace, undo: ExitStack
         undo.enter_context(set_meanwhile(scene.cycles, device=scene.cycles.device))
         for gpu in use_device(scene, options.device):
             print(f"renders on: {gpu}", flush=True)
-
-
-def _problems(preparation: Preparation) -> list[str]:
-    """Return what preparing a scene has left to be mended, in sentences."""
-    return [str(problem) for problem in preparation.problems]
 
 
 def _as_json(rendered: Rendered) -> dict[str, Any]:

@@ -58,7 +58,7 @@ def require_frames(scene: bpy.types.Scene, frames: Sequence[Frame], samples: int
     for frame in frames:
         require_within(scene, "frame_current", frame.number)
     require_picture(scene, frames[0].path, samples)
-    require_output_folders(scene, (number_of(scene, frame) for frame in frames))
+    require_output_folders(scene)
 
 
 def is_there(scene: bpy.types.Scene, frame: Frame) -> bool:

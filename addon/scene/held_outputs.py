@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -25,12 +25,12 @@ def file_outputs_held_back(scene: bpy.types.Scene, numbered: bool) -> Iterator[N
     with ExitStack() as undo:
         held = []
         for node in file_outputs(scene):
-            folder = _folder(scene, node, scene.frame_current)
+            for owner, name in _unnumbered(node) if numbered else ():
+                undo.enter_context(set_meanwhile(owner, **{name: f"{getattr(owner, name)}####"}))
+            folder = _folder(scene, node)
             if folder is not None:
                 draft = undo.enter_context(replacing_in(folder))
                 undo.enter_context(set_path_meanwhile(node, "directory", draft))
-                for owner, name in _unnumbered(node) if numbered else ():
-                    undo.enter_context(set_meanwhile(owner, **{name: f"{getattr(owner, name)}####"}))
                 held.append((node, folder, draft))
         yield
         for node, folder, draft in held:
@@ -50,25 +50,25 @@ def _unnumbered(node: bpy.types.CompositorNodeOutputFile) -> list[tuple[Any, str
     return [(item, "name") for item in node.file_output_items if "#" not in item.name]
 
 
-def require_output_folders(scene: bpy.types.Scene, frames: Iterable[int]) -> None:
-    """Make sure that File Output nodes can write what they will on some frames.
+def require_output_folders(scene: bpy.types.Scene) -> None:
+    """Make sure that files can be written where File Output nodes will.
 
     :raises RenderError: for a folder that Blender cannot name.
     :raises WriteError: for one that no files can be written to.
     """
-    frames = tuple(frames)
-    folders = {_folder(scene, node, frame) for node in file_outputs(scene) for frame in frames}
-    for folder in sorted(folders - {None}):
-        require_folder(folder)
+    for node in file_outputs(scene):
+        folder = _folder(scene, node)
+        if folder is not None:
+            require_folder(folder)
 
 
-def _folder(scene: bpy.types.Scene, node: bpy.types.CompositorNodeOutputFile, frame: int) -> Path | None:
+def _folder(scene: bpy.types.Scene, node: bpy.types.CompositorNodeOutputFile) -> Path | None:
     """Return where a File Output node writes; None where its own name is part of that, which scenes cannot tell."""
     if "{node_name}" in node.directory:
         return None
     with set_meanwhile(scene.render, filepath=f"{node.directory}/x"):
         try:
-            return Path(scene.render.frame_path(frame=frame)).parent
+            return Path(scene.render.frame_path(frame=scene.frame_current)).parent
         except RuntimeError as error:
             text = " ".join(str(error).split()).removeprefix("Error: ")
             raise RenderError(f"{node.name!r} of the compositor: {text}") from None

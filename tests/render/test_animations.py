@@ -9,12 +9,13 @@ from command_line import assert_one_line, run
 from disk import OLD, full_disk, names
 from scenes import add_camera, mostly_again, oiio, read_picture
 from sequences import render, report_of, save_sinking_ball
-from stripes import stripes, with_passes
+from stripes import stripes, with_passes, with_writer
 
 from nested_dielectric.model.frames import FIRST_FRAME, LAST_FRAME
 from nested_dielectric.model.manifest import manifest
 from nested_dielectric.scene import devices, frame_sequences
 from nested_dielectric.scene.chosen_view import layer_alone, through_camera
+from nested_dielectric.scene.frame_sequences import Frame, render_frames
 from nested_dielectric.scene.output import check_picture, save_blend
 
 
@@ -36,13 +37,19 @@ def small(tmp_path_factory):
     return save_blend(tmp_path_factory.mktemp("small") / "small.blend")
 
 
+@pytest.mark.parametrize("keeps_data", mostly_again([False, True]))
 @pytest.mark.parametrize("arguments", mostly_again([(), ("--backend", "native"), ("--no-cut",)]))
-def test_each_frame_of_a_sequence_is_that_of_a_run_of_its_own(arguments, ball, tmp_path):
-    assert render(ball, tmp_path / "all_##.exr", "--frames", "1-5:2,4", *arguments) == 0
-    assert names(tmp_path) == [f"all_0{frame}.exr" for frame in (1, 3, 4, 5)]
+def test_each_frame_of_a_sequence_is_that_of_a_run_of_its_own(arguments, keeps_data, ball, tmp_path, monkeypatch):
+    """Also where Cycles keeps what it has of a scene from one frame to the next."""
+    file = tmp_path / "ball.blend"
+    bpy.ops.wm.open_mainfile(filepath=str(ball))
+    bpy.context.scene.render.use_persistent_data = keeps_data
+    save_blend(file)
+    assert render(file, tmp_path / "all_##.exr", "--frames", "1-5:2,4", *arguments) == 0
+    assert names(tmp_path) == [*(f"all_0{frame}.exr" for frame in (1, 3, 4, 5)), "ball.blend"]
     for frame in (4, 5):
-        assert render(ball, tmp_path / "one_##.exr", "--frame", frame, *arguments) == 0
-    pictures = {name: read_picture(tmp_path / name) for name in names(tmp_path)}
+        assert render(file, tmp_path / "one_##.exr", "--frame", frame, *arguments) == 0
+    pictures = {path.name: read_picture(path) for path in tmp_path.glob("*.exr")}
     for frame in (4, 5):
         np.testing.assert_array_equal(pictures[f"all_0{frame}.exr"], pictures[f"one_0{frame}.exr"])
     assert np.abs(pictures["all_04.exr"] - pictures["all_05.exr"]).mean() > 0.005
@@ -80,7 +87,7 @@ def test_json_tells_of_the_file_its_problems_and_each_frame(ball, tmp_path):
     report = report_of(done.stdout)
     assert report["schema"] == 1 and report["version"] == manifest()["version"]
     assert (report["file"], report["scene"], report["error"]) == (str(ball), "Scene", None)
-    assert report["blender"] == bpy.app.version_string and report["problems"] == []
+    assert report["blender"] == bpy.app.version_string and report["problems"] == report["changes"] == []
     for frame, number in zip(report["frames"], (1, 2), strict=True):
         assert frame.pop("seconds") > 0.0
         assert frame == {"frame": number, "path": f"{tmp_path}/x_{number}.png", "state": "written"}
@@ -206,13 +213,48 @@ def test_a_time_limit_ends_a_frame_early(small, tmp_path):
     check_picture(tmp_path / "x.png", "x.png", (16, 16))
 
 
-def test_passes_of_each_frame_have_its_number_as_in_animations_of_blender(tmp_path):
+NAMED = [
+    (True, "shot", "A"),
+    (False, "s_", "A"),
+    (False, "a_##", "A"),
+    (False, "s", ""),
+    (False, "", "b_##"),
+    (True, "", "A"),
+]
+
+
+@pytest.mark.parametrize("named", mostly_again(NAMED, 2))
+def test_files_of_the_compositor_have_each_frames_number_as_blender_gives_it_to_animations(named, tmp_path):
+    layered, name, item = named
+    scene = stripes(8)
+    writer = with_writer(scene, f"{tmp_path}/ours/", name, item, layered)
+    for frame in render_frames(scene, [Frame(number, tmp_path / f"x_{number}.png") for number in (1, 2)]):
+        assert frame.state == "written"
+    assert (writer.file_name, writer.file_output_items[0].name) == (name, item)
+    writer.directory = f"{tmp_path}/blender/"
+    scene.frame_start, scene.frame_end, scene.render.filepath = 1, 2, f"{tmp_path}/x_"
+    bpy.ops.render.render(animation=True)
+    assert names(tmp_path / "ours") == names(tmp_path / "blender") and len(names(tmp_path / "ours")) == 2
+
+
+def test_a_folder_of_passes_that_cannot_be_written_is_named_before_the_work(tmp_path, capfd):
     scene = stripes(16)
-    with_passes(tmp_path, scene)
+    writer = with_passes(tmp_path, scene)
+    writer.directory = f"{tmp_path}/shot/passes/"
     save_blend(tmp_path / "passes.blend")
-    assert render(tmp_path / "passes.blend", tmp_path / "x_#.exr", "--frames", "1,2") == 0
-    passes = ["passes/shot_passes0001.exr", "passes/shot_passes0002.exr"]
-    assert names(tmp_path) == ["passes", "passes.blend", *passes, "x_1.exr", "x_2.exr"]
+    (tmp_path / "shot").write_bytes(OLD)
+    assert render(tmp_path / "passes.blend", tmp_path / "x_##.exr", "--frames", "11-13") == 1
+    out, error = capfd.readouterr()
+    assert_one_line(error.splitlines()[-1], "shot/passes: cannot be written")
+    assert "Ready" not in out and names(tmp_path) == ["passes.blend", "shot"]
+
+
+@pytest.mark.parametrize("device, words", [("CPU", "rendered: by OSL"), ("GPU", "rendered: by Cycles' own nodes")])
+def test_the_device_is_set_before_what_renders_media_is_chosen(device, words, ball, tmp_path, monkeypatch, capfd):
+    monkeypatch.setattr(devices, "_enable_gpus", lambda: ("A made-up GPU",))
+    assert render(ball, tmp_path / "x.png", "--device", device, "--samples", 1) == 0
+    out = capfd.readouterr().out
+    assert words in out and ("renders on: A made-up GPU" in out) == (device == "GPU")
 
 
 @pytest.mark.parametrize(

@@ -7,17 +7,15 @@ import sys
 import time
 from pathlib import Path
 
-import bpy
 import numpy as np
 import pytest
 from disk import names
 from scenes import mostly_again, oiio, write_picture
-from stripes import stripes
+from stripes import stripes, with_writer
 
 from nested_dielectric import cli
 from nested_dielectric.model.files import MARK
 from nested_dielectric.scene.output import check_picture, save_blend
-from nested_dielectric.scene.passes import add_compositor
 
 KILLS = 20
 FRAMES = 8
@@ -38,16 +36,7 @@ def shot(tmp_path_factory):
     scene.cycles.samples = 2
     plain = scene.copy()
     plain.name, plain.use_fake_user = "Plain", True
-    tree = bpy.data.node_groups.new("Nodes", "CompositorNodeTree")
-    tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-    add_compositor(scene, tree)
-    layers, writer = (tree.nodes.new(kind) for kind in ("CompositorNodeRLayers", "CompositorNodeOutputFile"))
-    writer.format.media_type, writer.format.file_format = "IMAGE", "PNG"
-    writer.directory, writer.file_name = "//passes/", "beauty_"
-    writer.file_output_items.clear()
-    writer.file_output_items.new("RGBA", "")
-    tree.links.new(layers.outputs["Image"], writer.inputs[0])
-    tree.links.new(layers.outputs["Image"], tree.nodes.new("NodeGroupOutput").inputs[0])
+    with_writer(scene, "//passes/", "beauty_")
     save_blend(folder / "shot.blend")
     for way, arguments in WAYS.items():
         place = folder / way
