@@ -1,6 +1,8 @@
 """The command line, as a process of its own."""
 
+import re
 import sys
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -147,3 +149,11 @@ def test_bake_without_matplotlib_says_so_before_anything_is_written(tmp_path, mo
 )
 def test_wrong_usage_has_exit_code_2(arguments):
     assert run(*arguments).returncode == 2
+
+
+def test_the_manual_has_a_row_for_every_option_of_render(capsys):
+    assert cli.main(["render", "--help"]) == 0
+    options = set(re.findall(r"--[a-z-]+", capsys.readouterr().out)) - {"--help", "--traceback", "--output"}
+    manual = (Path(__file__).parents[2] / "docs" / "command-line.md").read_text(encoding="utf-8")
+    rows = "\n".join(line.split("|")[1] for line in manual.splitlines() if line.startswith("| `--"))
+    assert options <= set(re.findall(r"--[a-z-]+", rows)) and "--frames" in options

@@ -10,6 +10,7 @@ from stripes import stripes, with_passes
 import nested_dielectric as nd
 from nested_dielectric.model.files import WriteError
 from nested_dielectric.scene.rendering import RenderError, render_frame
+from nested_dielectric.scene.sample_ranges import rendering_part
 
 ROUNDING = 1e-6
 """Sums of 32-bit floats in another order, of pixels up to 1."""
@@ -122,3 +123,30 @@ def test_a_part_for_which_the_disk_is_too_full_leaves_the_old_file(tmp_path):
     with full_disk(size - 100), pytest.raises((WriteError, RenderError), match=r"x\.exr: was not written"):
         render_frame(scene, tmp_path / "x.exr", range(2))
     assert names(tmp_path) == ["x.exr"] and (tmp_path / "x.exr").read_bytes() == OLD
+
+
+def test_cycles_says_of_a_part_that_it_holds_all_samples_and_merges_of_files_in_parts_the_first(tmp_path):
+    """Why parts are told what they hold, and are written in one part with all layers."""
+    scene = stripes(8)
+    scene.cycles.samples = 4
+    scene.view_layers[0].use_pass_normal = True
+    for interleave in (True, False):
+        for samples in (range(1), range(1, 4)):
+            with rendering_part(scene, samples):
+                scene.render.image_settings.use_exr_interleave = interleave
+                scene.render.filepath = str(tmp_path / f"{samples.start}.exr")
+                bpy.ops.render.render(write_still=True)
+            spec = oiio.ImageBuf(scene.render.filepath).spec()
+            assert spec.getattribute("cycles.ViewLayer.samples") == "4"
+        layers = layers_of(merged(tmp_path, tmp_path / "0.exr", tmp_path / "1.exr"))
+        assert ("ViewLayer.Normal" in layers) == interleave
+
+
+def test_parts_of_several_view_layers_are_told_what_they_hold(tmp_path):
+    scene = stripes(8)
+    scene.cycles.samples = 4
+    scene.view_layers.new("Second.samples")
+    render_frame(scene, tmp_path / "x.exr", range(1, 4))
+    spec = oiio.ImageBuf(str(tmp_path / "x.exr")).spec()
+    counts = [each.value for each in spec.extra_attribs if each.name.endswith(".samples")]
+    assert counts == ["3", "3"]
