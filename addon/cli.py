@@ -17,7 +17,7 @@ from functools import partial
 
 import bpy
 
-from .commands import check, demo, import_jf, prepare, render, tables
+from .commands import check, demo, import_jf, pack, prepare, render, tables
 from .commands.shared import PROGRAM, Failure, one_line
 from .importers.jf_parameters import JfError
 from .model.colour_science import SpectrumError
@@ -32,6 +32,7 @@ COMMANDS = (
     check.add_command,
     prepare.add_prepare,
     prepare.add_update,
+    pack.add_command,
     tables.add_presets,
     tables.add_bake,
     import_jf.add_command,

@@ -7,7 +7,7 @@ from dataclasses import astuple, dataclass
 import bpy
 
 from ..nodes.identity import scene_number
-from ..nodes.names import ANALYSED, FACTS_SCENE
+from ..nodes.names import ANALYSED, FACTS_SCENE, LEFT_TO_SHADER
 from ..nodes.validity import evaluate_every_frame
 
 
@@ -72,3 +72,9 @@ def set_native_validity(scene: bpy.types.Scene, valid: bool) -> None:
         else:
             del scene[FACTS_SCENE]
         scene.update_tag()
+
+
+def leave_scene_to_shader(scene: bpy.types.Scene) -> None:
+    """Let Cycles' own nodes show the alarm in a scene until it is analysed again, whatever its media are told."""
+    scene[FACTS_SCENE] = LEFT_TO_SHADER
+    scene.update_tag()

@@ -12,17 +12,14 @@ import bpy
 
 from ..checking.check import check
 from ..checking.finding import Finding, to_json
-from ..checking.kinds import Severity
+from ..checking.listing import STRICT, WRONG, in_lines, is_refused
 from ..fixing.fix import fix_all
 from ..model.streams import log_to_stderr
 from ..scene.output import save_blend
-from .shared import AddParser, Failure, add_file, blend_name, open_file
+from .shared import FOUND, AddParser, Failure, add_file, blend_name, open_file
 
 CHECK_SCHEMA = 1
 """Version of the JSON that ``check`` writes; it is counted on when a key changes its meaning or goes."""
-
-FOUND = 3
-"""Exit code of ``check`` where something is wrong."""
 
 
 def add_command(add_parser: AddParser) -> None:
@@ -51,11 +48,11 @@ def _run(options: argparse.Namespace) -> int:
             print(_as_json(findings, changes, saved), file=output, flush=True)
         else:
             for name, found in findings.items():
-                print("\n".join(_in_lines(name, found, changes[name])))
+                print("\n".join(in_lines(name, found, changes[name])))
             if saved:
                 print(f"wrote {saved}")
-    counts = {Severity.WRONG, Severity.SLOW} if options.strict else {Severity.WRONG}
-    return FOUND if any(each.severity in counts for found in findings.values() for each in found) else 0
+    level = STRICT if options.strict else WRONG
+    return FOUND if any(is_refused(found, level) for found in findings.values()) else 0
 
 
 def _as_json(findings: dict[str, list[Finding]], changes: dict[str, list[str]], saved: Path | None) -> str:
@@ -72,19 +69,3 @@ def _as_json(findings: dict[str, list[Finding]], changes: dict[str, list[str]], 
         "scenes": scenes,
     }
     return json.dumps(report, indent=2, ensure_ascii=False)
-
-
-def _in_lines(scene: str, found: list[Finding], changes: list[str]) -> list[str]:
-    """Return what ``check`` has found in a scene as lines of text."""
-    lines = [f"{scene}: {_headline(found)}", *(f"changed: {change}" for change in changes)]
-    for finding in found:
-        lines += [f"{finding.severity}: {finding}", f"  shows: {finding.shows}"]
-        if finding.place.point is not None:
-            lines.append("  at: " + ", ".join(f"{x:.6g}" for x in finding.place.point))
-    return lines
-
-
-def _headline(found: list[Finding]) -> str:
-    """Return in one line how much of each severity was found."""
-    counts = {severity: sum(finding.severity == severity for finding in found) for severity in Severity}
-    return ", ".join(f"{count} {severity}" for severity, count in counts.items() if count) or "nothing is wrong"

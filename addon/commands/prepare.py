@@ -6,11 +6,12 @@ import argparse
 
 import bpy
 
+from ..checking.listing import in_lines, is_refused
 from ..preparation.live import bake_cut
 from ..preparation.prepare_scene import prepare
 from ..preparation.versions import update_materials
 from ..scene.output import save_blend
-from .shared import AddParser, add_backend, add_file, add_saved, open_file
+from .shared import FOUND, AddParser, add_backend, add_check, add_file, add_saved, open_file
 
 
 def add_prepare(add_parser: AddParser) -> None:
@@ -24,13 +25,21 @@ def add_prepare(add_parser: AddParser) -> None:
         "not (default: as the file has it)",
     )
     add_backend(preparation)
+    add_check(preparation)
     preparation.set_defaults(run=_prepare)
 
 
-def _prepare(options: argparse.Namespace) -> None:
-    """Prepare a file and save it."""
+def _prepare(options: argparse.Namespace) -> int:
+    """Prepare a file and save it; or with ``--check`` say what is wrong with it.
+
+    :returns: 0, or :data:`FOUND` where nothing was saved because of that.
+    """
     scene = open_file(options.file)
-    print(prepare(scene, options.cut, options.backend))
+    preparation = prepare(scene, options.cut, options.backend)
+    if is_refused(preparation.findings, options.check):
+        print("\n".join(in_lines(scene.name, preparation.findings)))
+        return FOUND
+    print(preparation)
     if options.cut:
         hindrance = bake_cut(scene)
         print(
@@ -39,6 +48,7 @@ def _prepare(options: argparse.Namespace) -> None:
             else f"the cut of frame {scene.frame_current} is in the file"
         )
     print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
+    return 0
 
 
 def add_update(add_parser: AddParser) -> None:

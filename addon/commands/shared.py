@@ -13,6 +13,7 @@ from typing import Any
 
 import bpy
 
+from ..checking.listing import STRICT, WRONG
 from ..model.files import absolute
 from ..model.manifest import manifest
 from ..model.streams import log_to_stderr
@@ -20,6 +21,9 @@ from ..nodes.render_with import BACKENDS
 from ..preparation.guard import faults
 
 PROGRAM = "nested-dielectric"
+
+FOUND = 3
+"""Exit code where something is wrong with the file that was looked at."""
 
 AddParser = Callable[..., argparse.ArgumentParser]
 
@@ -144,6 +148,14 @@ def parsed(parse: Callable[[str], Any]) -> Callable[[str], Any]:
             raise argparse.ArgumentTypeError(str(error)) from None
 
     return convert
+
+
+def add_check(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--check",
+        choices=(WRONG, STRICT),
+        help="save nothing where pictures would be wrong, or with strict also where they would be slow",
+    )
 
 
 def file_name(text: str) -> Path:

@@ -116,7 +116,7 @@ def _limits(
     if NATIVE_SOCKET not in node.inputs:
         yield need("is of an older version of the extension, or a copy; update it")
         return
-    for limit, parameter in limits_at_work(_values(node) | circumstances, bpy.app.version).items():
+    for limit, parameter in limits_at_work(unchanging_values(node) | circumstances, bpy.app.version).items():
         yield need(f"has {parameter.name}: Cycles' own nodes {limit.text}", parameter.keyword)
     if any(output.is_linked for output in node.outputs if output.name == MASK_OUTPUT):
         yield need(f"has its {MASK_OUTPUT} plugged in, which only the shader knows")
@@ -126,7 +126,7 @@ def _limits(
         yield need("may hold things that are no media, and only the shader tints all rays to them")
 
 
-def _values(node: bpy.types.ShaderNodeGroup) -> dict[str, Any]:
+def unchanging_values(node: bpy.types.ShaderNodeGroup) -> dict[str, Any]:
     """Return the values of a medium that are the same on every frame, by keyword; what a Shader socket is linked to is None."""
     paths = {curve.data_path for curve in curves(node.id_data.animation_data)}
     values = {}

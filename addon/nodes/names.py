@@ -76,6 +76,9 @@ FACTS_SCENE = "nd_told"
 Cycles' own nodes go by it, as they cannot probe the scene where facts do not hold.
 """
 
+LEFT_TO_SHADER = -1.0
+"""Its value where Cycles' own nodes are to show the alarm, whatever they are told: only the shader is right."""
+
 CENTRE = "nd_centre"
 """Custom property of a scene: a point amid its media, from which shadow rays measure how far they go through them.
 

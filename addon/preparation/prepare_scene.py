@@ -56,6 +56,11 @@ class Preparation:
     notes: tuple[Finding, ...] = ()
 
     @property
+    def findings(self) -> tuple[Finding, ...]:
+        """All that was found, the worst first: problems and notes."""
+        return self.problems + self.notes
+
+    @property
     def headline(self) -> str:
         """Say in one line whether the scene is ready."""
         return headline(self.media, len(self.problems))
@@ -110,7 +115,7 @@ def prepare(scene: bpy.types.Scene, cut: bool | None = None, backend: str | None
         back = settings.go_back(scene, changed)
         problems, notes = _sorted(check(scene))
         preparation = Preparation(tuple(stays + back), problems, cut=update_cut(scene), notes=notes)
-    keep_report(scene, preparation.media, preparation.problems + preparation.notes, stays, changed)
+    keep_report(scene, preparation.media, preparation.findings, stays, changed)
     return preparation
 
 

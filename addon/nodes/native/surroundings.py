@@ -26,6 +26,7 @@ from ...model.contract import (
 from ...model.dispersion import LINE_D, jf_ior
 from ...model.parameters import BY_NAME
 from ..cut_faces import CUT_WITH_COLOUR, CUT_WITH_DISPERSION
+from ..names import LEFT_TO_SHADER
 from ..numbers import Number
 from ..shader_nodes import Socket, attribute, lazily, mix_values
 from .coefficients import Coefficients
@@ -56,14 +57,13 @@ class Surroundings(NativePart):
         exists = self.choose(
             self.face_has_facts, 1.0 - self.outside.equals(Exterior.WINNER), self.face < 0.5 * CUT_HIDDEN
         )
-        known = self.face_has_facts.math("MAXIMUM", known)
+        known = self.face_has_facts.math("MAXIMUM", known) * self.may_render
         by_faces = self.surely(self.raw("Outside").equals(Exterior.UNKNOWN))
         self.add_output("Told", "FLOAT", self.choose(self.face_has_facts, self.outside, TOLD_BY_FACE))
         self.add_output("Known", "FLOAT", known)
         self.add_output("Exists", "FLOAT", exists)
-        self.add_output(
-            "Shows", "FLOAT", self.where(by_faces, known * exists, abs(self.face).math("COMPARE", *_INDICES))
-        )
+        shows = abs(self.face).math("COMPARE", *_INDICES) * self.may_render
+        self.add_output("Shows", "FLOAT", self.where(by_faces, known * exists, shows))
         self.add_output("Face", "FLOAT", self.face)
         self.add_output("In Air", "FLOAT", air)
         ior = self.where(by_faces, ior, abs(self.face) + self.face_offset)
@@ -74,6 +74,11 @@ class Surroundings(NativePart):
         self.add_output(
             "Priority Outside", "FLOAT", self.choose(air.math("MAXIMUM", 1.0 - exists), outside, NO_PRIORITY)
         )
+
+    @cached_property
+    def may_render(self) -> Number:
+        """1 unless the scene leaves its media to the shader alone, and 0 for the alarm."""
+        return self.raw("Scene") > 0.5 * LEFT_TO_SHADER
 
     @cached_property
     def by_object(self) -> Number:
