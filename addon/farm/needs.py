@@ -18,6 +18,7 @@ from ..nodes.render_settings import engine_name
 from ..nodes.render_with import is_native
 from ..scene.debug_views import debug_notice
 from ..scene.materials import may_disperse, rendered_node
+from ..scene.media import dispersing_materials
 from ..scene.scripts import frame_scripts
 
 VERSIONS = ("5.2", "5.3")
@@ -105,6 +106,8 @@ def _differs(material: bpy.types.Material) -> bool:
 
 def _notes(scene: bpy.types.Scene) -> Iterator[str]:
     """Yield what else there is to know of a scene on another machine."""
+    if not is_native(scene) and dispersing_materials(scene):
+        yield "motion blur as the file has it: its random time carries wavelengths"
     notice = debug_notice(scene)
     if notice:
         yield notice

@@ -14,19 +14,29 @@ def make_local() -> list[str]:
 
     What a library lacks stays linked: :mod:`nested_dielectric.farm.outside` names it.
     """
-    libraries = [library for library in bpy.data.libraries if not library.is_missing]
-    linked = [data for data in bpy.data.user_map() if data.library is not None and not data.is_missing]
-    for data in linked:
-        data.make_local()
+    linked: set[bpy.types.ID] = set()
+    while linked != (linked := _linked_data()):
+        users = bpy.data.user_map(subset=linked)
+        # What others linked use, too, would be copied, and they would go on using what is linked.
+        first = [data for data in linked if not any(user in linked for user in users[data] - {data})]
+        for data in first or list(linked)[:1]:
+            data.make_local()
     for data in list(bpy.data.user_map()):
         if data.override_library is not None:
             data.make_local()
-    left = {data.library for data in bpy.data.user_map()}
-    done = [library for library in libraries if library not in left]
+    left = {data.library for data in bpy.data.user_map()} - {None}
+    left |= {library.archive_parent_library for library in left}
+    # Those that are packed, and so in the file already, go with the one that they come from.
+    done = [library for library in bpy.data.libraries if library not in left and not library.is_archive]
     changes = [f"{library.filepath}: its data are the file's own now" for library in done]
     for library in done:
         bpy.data.libraries.remove(library)
     return changes
+
+
+def _linked_data() -> set[bpy.types.ID]:
+    """Return all data of the open file that are linked and there."""
+    return {data for data in bpy.data.user_map() if data.library is not None and not data.is_missing}
 
 
 def pack_files() -> list[str]:
