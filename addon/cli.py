@@ -17,7 +17,7 @@ from functools import partial
 
 import bpy
 
-from .commands import check, demo, import_jf, pack, prepare, render, tables
+from .commands import check, demo, import_jf, merge, pack, prepare, render, tables
 from .commands.shared import PROGRAM, Failure, one_line
 from .importers.jf_parameters import JfError
 from .model.colour_science import SpectrumError
@@ -29,6 +29,7 @@ from .preparation.guard import faults
 COMMANDS = (
     demo.add_command,
     render.add_command,
+    merge.add_command,
     check.add_command,
     prepare.add_prepare,
     prepare.add_update,

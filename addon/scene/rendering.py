@@ -76,7 +76,7 @@ def render_frame(
         if done != {"FINISHED"}:
             raise RenderError(f"scene {scene.name!r}: the render was cancelled")
         if isinstance(samples, range):
-            tell_samples(draft, output, len(samples))
+            tell_samples(draft, output, samples)
         check_whole(scene, draft, output)
     return absolute(output)
 

@@ -17,7 +17,10 @@ from .output import reason
 from .passes import compositors
 from .render_error import RenderError
 
-_SAMPLES = re.compile(r"cycles\..*\.samples")
+SAMPLES = "nested_dielectric.samples"
+"""Metadata that says which samples a file holds, as ``A:B``."""
+
+_COUNTS = re.compile(r"cycles\..*\.samples")
 """Metadata by which Cycles' merging weighs the layers of a file."""
 
 
@@ -77,8 +80,8 @@ def rendering_part(scene: bpy.types.Scene, samples: range) -> Iterator[None]:
         yield
 
 
-def tell_samples(file: Path, path: Path | str, count: int) -> None:
-    """Write into a part how many samples it holds, which weighs it where parts of different length are merged.
+def tell_samples(file: Path, path: Path | str, samples: range) -> None:
+    """Write into a part which samples it holds; their number weighs it where parts of different length are merged.
 
     Cycles writes the number of the whole picture's samples.
 
@@ -98,11 +101,12 @@ def tell_samples(file: Path, path: Path | str, count: int) -> None:
         whole = pixels is not None and not picture.has_error
     finally:
         picture.close()
-    counts = [each.name for each in spec.extra_attribs if _SAMPLES.fullmatch(each.name)]
+    counts = [each.name for each in spec.extra_attribs if _COUNTS.fullmatch(each.name)]
     if not whole or not counts:
         raise WriteError(f"{path}: was not written whole; is the disk full?")
     for each in counts:
-        spec.attribute(each, str(count))
+        spec.attribute(each, str(len(samples)))
+    spec.attribute(SAMPLES, f"{samples.start}:{samples.stop}")
     output = oiio.ImageOutput.create("exr")
     done = output.open(name, spec) and output.write_image(pixels)
     if not (output.close() and done):
