@@ -17,7 +17,7 @@ from functools import partial
 
 import bpy
 
-from .commands import check, demo, import_jf, merge, pack, prepare, render, tables
+from .commands import check, demo, import_jf, merge, pack, prepare, render, submit, tables
 from .commands.shared import PROGRAM, Failure, one_line
 from .importers.jf_parameters import JfError
 from .model.colour_science import SpectrumError
@@ -34,6 +34,7 @@ COMMANDS = (
     prepare.add_prepare,
     prepare.add_update,
     pack.add_command,
+    submit.add_command,
     tables.add_presets,
     tables.add_bake,
     import_jf.add_command,

@@ -20,8 +20,8 @@ from .layered_files import opened, read_rows, write
 from .merged_denoising import denoise
 from .merged_passes import mend, plan
 
-_SAME = ("File", "Scene", "Frame", "Camera", "ViewLayer")
-"""What Blender writes into pictures, where it is set to: parts of one have the same."""
+_SAME = ("Scene", "Frame", "Camera")
+"""What Blender writes into pictures, where it is set to, and parts of one have in common; files lie elsewhere on each machine."""
 
 
 class MergeError(RuntimeError):

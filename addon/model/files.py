@@ -50,6 +50,29 @@ def replacing(path: Path | str) -> Iterator[Path]:
 
 
 @contextmanager
+def new_folder(path: Path | str) -> Iterator[Path]:
+    """Yield a folder for a block to fill, which takes its place at the end with all that is in it.
+
+    Whatever the block raises leaves nothing behind; missing folders above it are made.
+
+    :raises WriteError: before the block, if something is there already, but for an empty folder, or if no folder can be made
+        there; for an OSError in it.
+    """
+    target = absolute(path)
+    with _blaming(path):
+        if os.path.lexists(target) and not (target.is_dir() and not any(target.iterdir())):
+            raise WriteError(f"{path}: is there already; name a new folder, or an empty one")
+        with _draft(target.parent) as draft:
+            draft.path.mkdir()
+            yield draft.path
+            with _moving:
+                if target.exists():
+                    target.rmdir()
+                os.replace(draft.path, target)
+                draft.made = []
+
+
+@contextmanager
 def replacing_in(folder: Path | str) -> Iterator[Path]:
     """Yield a new folder in a folder; the files that the block leaves in it take their places in the folder at the end.
 

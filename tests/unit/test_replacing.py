@@ -11,7 +11,7 @@ import pytest
 from disk import OLD, names
 
 from nested_dielectric.model import files
-from nested_dielectric.model.files import WriteError, replacing, replacing_in
+from nested_dielectric.model.files import WriteError, new_folder, replacing, replacing_in
 
 
 @pytest.mark.parametrize("name", ["{blend_name}.png", "shot_##.png", "é 漢\n.png", "a\udcff.png", "n" * 251 + ".png"])
@@ -148,3 +148,27 @@ def test_afterwards_signals_are_handled_as_before():
     assert [signal.getsignal(number) for number in files._REQUESTS] == handlers
     assert [files._get_action(number) for number in files._REQUESTS] == actions
     assert signal.set_wakeup_fd(-1) == -1
+
+
+@pytest.mark.parametrize("place", ["new/deep", "empty"])
+def test_a_new_folder_is_there_with_all_that_is_in_it(place, tmp_path):
+    (tmp_path / "empty").mkdir()
+    with new_folder(tmp_path / place) as draft:
+        (draft / "in").mkdir()
+        (draft / "in" / "x").write_bytes(b"new")
+        assert not (tmp_path / place / "in").exists()
+    assert (tmp_path / place / "in" / "x").read_bytes() == b"new"
+    assert not [name for name in names(tmp_path) if files.MARK in name]
+
+
+def test_a_folder_that_is_not_filled_leaves_nothing_and_what_is_there_stays(tmp_path):
+    with pytest.raises(KeyError), new_folder(tmp_path / "new" / "deep") as draft:
+        (draft / "x").write_bytes(b"new")
+        raise KeyError
+    assert names(tmp_path) == []
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "x").write_bytes(OLD)
+    for place in ("full", "full/x"):
+        with pytest.raises(WriteError, match="is there already"), new_folder(tmp_path / place):
+            pytest.fail("the work began")
+    assert names(tmp_path) == ["full", "full/x"] and (tmp_path / "full" / "x").read_bytes() == OLD
