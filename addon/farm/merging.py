@@ -21,7 +21,7 @@ from .merged_denoising import denoise
 from .merged_passes import mend, plan
 
 _SAME = ("Scene", "Frame", "Camera")
-"""What Blender writes into pictures, where it is set to, and parts of one have in common; files lie elsewhere on each machine."""
+"""What parts of one picture have in common, where Blender is set to write it; files lie elsewhere on each machine."""
 
 
 class MergeError(RuntimeError):
