@@ -12,9 +12,23 @@ from ..farm.job import NotPacked, write_job
 from ..farm.job_template import CHECKS, Job
 from ..model.files import absolute
 from ..model.frames import has_number, list_frames, parse_frames
+from ..scene.chosen_view import cameras
+from ..scene.devices import DEVICES
 from ..scene.image_formats import FILE_FORMATS, file_format_of
 from ..scene.rendering import require_picture
-from .shared import FOUND, AddParser, Failure, add_backend, add_file, add_scene, file_name, open_file, parsed, positive
+from .shared import (
+    FOUND,
+    AddParser,
+    Failure,
+    add_backend,
+    add_file,
+    add_scene,
+    file_name,
+    named,
+    open_file,
+    parsed,
+    positive,
+)
 
 _FORWARDED = ("camera", "view_layer", "device")
 """Options that are ``render``'s, too. The scene is not among them, as the job's file opens with it."""
@@ -59,7 +73,7 @@ def add_command(add_parser: AddParser) -> None:
     job.add_argument("--camera", metavar="C", help="camera to render through (default: the scene's)")
     job.add_argument("--view-layer", metavar="L", help="the one view layer to render (default: all that are in use)")
     job.add_argument(
-        "--device", choices=("cpu", "gpu"), help="what renders on the workers (default: as the file has it)"
+        "--device", type=str.upper, choices=DEVICES, help="what renders on the workers (default: as the file has it)"
     )
     job.add_argument("--no-cut", action="store_true", help="render media as they are")
     add_backend(job)
@@ -158,10 +172,11 @@ def _require_named(scene: bpy.types.Scene, options: argparse.Namespace) -> None:
 
     :raises Failure: if it is not.
     """
-    named_there = ((options.camera, scene.objects, "camera"), (options.view_layer, scene.view_layers, "view layer"))
-    for name, things, kind in named_there:
-        if name is not None and name not in things:
-            raise Failure(f"scene {scene.name!r} has no {kind} {name!r}")
+    there = f"scene {scene.name!r}"
+    if options.camera is not None:
+        named(cameras(scene), options.camera, "camera", there)
+    if options.view_layer is not None:
+        named(scene.view_layers, options.view_layer, "view layer", there)
 
 
 def _forwarded(options: argparse.Namespace) -> list[str]:

@@ -30,7 +30,7 @@ def opened(path: Path) -> Iterator[Any]:
 
     picture = oiio.ImageInput.open(os.fsencode(path))
     if picture is None:
-        raise LayeredFileError(f"{path}: cannot be read ({' '.join(oiio.geterror().split())})")
+        raise LayeredFileError(f"{path}: cannot be read ({' '.join(oiio.geterror().split())}); render it again")
     try:
         yield picture
     finally:
@@ -47,7 +47,7 @@ def read_rows(picture: Any, begin: int, end: int) -> np.ndarray:
     spec = picture.spec()
     rows = picture.read_scanlines(spec.y + begin, spec.y + end, 0, 0, spec.nchannels, oiio.FLOAT)
     if rows is None or picture.has_error:
-        raise LayeredFileError(f"a part is not whole ({' '.join(picture.geterror().split())}); render it again")
+        raise LayeredFileError(f"a picture is not whole ({' '.join(picture.geterror().split())})")
     return np.asarray(rows, dtype=np.float32).reshape(end - begin, spec.width, spec.nchannels)
 
 

@@ -117,12 +117,10 @@ def _merge(parts: Sequence[Part], draft: Path, output: Path) -> None:
     """
     import _cycles
 
-    for part in parts:
-        check_picture(part.path, part.path)  # or Cycles would take what is missing for black
     try:
         _cycles.merge(input=[str(absolute(part.path)) for part in parts], output=str(draft))
     except Exception as error:  # of whatever kind Cycles' is
-        raise MergeError(f"{output}: cannot be merged ({error})") from None
+        raise MergeError(f"{output}: cannot be merged ({error}); render what cannot be read again") from None
     check_picture(draft, output)  # Cycles says nothing of a full disk
     with opened(draft) as merged:
         names = tuple(merged.spec().channelnames)

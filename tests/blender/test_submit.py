@@ -95,7 +95,7 @@ def test_a_job_says_what_was_asked_for(file, tmp_path):
     assert (values["Frames"], values["OutputName"], values["ChunkSize"]) == ("1-5,9", "shot.##.exr", 4)
     assert said["name"] == "{ {Shot} } 1 "
     assert command(said, "Check") == ["check", "--strict"]
-    assert {"--camera=Camera", "--view-layer=ViewLayer", "--device=cpu"} <= set(command(said, "Render"))
+    assert {"--camera=Camera", "--view-layer=ViewLayer", "--device=CPU"} <= set(command(said, "Render"))
     assert openjd("check", tmp_path / "job" / "template.json").returncode == 0
 
 

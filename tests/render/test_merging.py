@@ -11,6 +11,7 @@ from scenes import add_camera, add_plane, add_sphere, new_scene, set_striped_wor
 
 import nested_dielectric as nd
 from nested_dielectric import cli
+from nested_dielectric.farm.layered_files import LayeredFileError
 from nested_dielectric.farm.merging import MergeError, merge
 from nested_dielectric.model.files import WriteError
 from nested_dielectric.scene.output import save_blend
@@ -151,7 +152,6 @@ def parts(tmp_path_factory) -> Path:
     render_frame(scene, folder / "pass.exr", RANGES[1])
     scene.render.resolution_x = 20
     render_frame(scene, folder / "size.exr", RANGES[1])
-    (folder / "cut.exr").write_bytes((folder / "3-8.exr").read_bytes()[:-3000])
     return folder
 
 
@@ -175,10 +175,15 @@ def test_what_is_no_part_of_a_picture_is_named_and_nothing_is_written(parts, cho
     assert names(tmp_path) == ["out.exr"] and (tmp_path / "out.exr").read_bytes() == OLD
 
 
-def test_a_part_that_is_not_whole_is_named(parts, tmp_path):
-    with pytest.raises(RuntimeError, match=r"cut\.exr"):
-        merge([parts / "0-3.exr", parts / "cut.exr"], tmp_path / "out.exr")
-    assert not names(tmp_path)
+@pytest.mark.parametrize("place", [-1, -3000, 500])
+def test_a_part_that_is_not_whole_is_named(place, parts, tmp_path):
+    """Where its end is missing, or something within it."""
+    data = (parts / "3-8.exr").read_bytes()
+    cut = tmp_path / "cut.exr"
+    cut.write_bytes(data[:place] if place < 0 else data[:-place] + bytes(300) + data[-place + 300 :])
+    with pytest.raises((MergeError, LayeredFileError), match=r"cut\.exr.*; render .*again"):
+        merge([parts / "0-3.exr", cut], tmp_path / "out.exr")
+    assert names(tmp_path) == ["cut.exr"]
 
 
 def test_a_full_disk_leaves_what_was_there(parts, tmp_path):
