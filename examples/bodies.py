@@ -125,7 +125,7 @@ def ice_places(inside: np.ndarray, surface: float, ice: SimpleNamespace) -> list
     corners = [size * 0.5 * point for point in grid if 0 not in point]
     hull = [size * (CORE * point + EDGE * point.normalized()) for point in grid]
     places, boxes = [], []
-    tries = 3000 * ice.count
+    tries = 1000 * ice.count
     for attempt in range(tries):
         turn = Euler((random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0, pi)))
         reach, angle = inside[:, 0].max() * random.random() ** 0.5, random.uniform(0, 2 * pi)
