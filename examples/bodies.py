@@ -127,9 +127,9 @@ def ice_places(inside: np.ndarray, surface: float, ice: SimpleNamespace) -> list
     places, boxes = [], []
     tries = 1000 * ice.count
     for attempt in range(tries):
-        turn = Euler((random.uniform(-0.4, 0.4), random.uniform(-0.4, 0.4), random.uniform(0, pi)))
+        turn = Euler((random.uniform(-0.7, 0.7), random.uniform(-0.7, 0.7), random.uniform(0, pi)))
         reach, angle = inside[:, 0].max() * random.random() ** 0.5, random.uniform(0, 2 * pi)
-        height = surface - size * random.uniform(-0.05, 0.3) - (surface - floor) * attempt / tries
+        height = surface - size * random.uniform(-0.15, 0.25) - (surface - floor) * attempt / tries
         place = Matrix.LocRotScale((reach * cos(angle), reach * sin(angle), height), turn, None)
         points = [place @ point for point in hull]
         room = np.interp([point.z for point in points], inside[:, 1], inside[:, 0])
