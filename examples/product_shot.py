@@ -40,17 +40,20 @@ def build(shot: SimpleNamespace) -> bpy.types.Scene:
     """Empty the file, build a shot in it, and return its scene."""
     bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     inside = rounded(shot.vessel.inside)
-    add_medium("Vessel", turned("Vessel", rounded(shot.vessel.outside + shot.vessel.inside[::-1])), shot.vessel)
+    vessel = turned("Vessel", rounded(shot.vessel.outside + shot.vessel.inside[::-1]))
+    nd.assign(add("Vessel", vessel), medium("Vessel", shot.vessel))
     low = None
     for index, liquid in enumerate(shot.liquids):
         high = height_at(inside, liquid.level)
-        body = turned("Liquid", liquid_outline(inside, low, high))
-        add_medium(f"Liquid {index + 1}", body, liquid, priority=LIQUID_PRIORITY - index)
+        obj = add(f"Liquid {index + 1}", turned("Liquid", liquid_outline(inside, low, high)))
+        nd.assign(obj, medium(obj.name, liquid), priority=LIQUID_PRIORITY - index)
         low = high
     if shot.ice.count:
+        ice = medium("Ice", shot.ice)
         for index, place in enumerate(ice_places(inside, low, shot.ice)):
-            cube = add_medium(f"Ice {index + 1}", ice_cube(shot.ice.size, shot.ice.seed + index), shot.ice)
+            cube = add(f"Ice {index + 1}", ice_cube(shot.ice.size, shot.ice.seed + index))
             cube.matrix_world = place
+            nd.assign(cube, ice)
     for obj in bpy.context.scene.objects:
         obj.location.z += AIR_BELOW * MM
     add_studio(shot)
@@ -58,18 +61,14 @@ def build(shot: SimpleNamespace) -> bpy.types.Scene:
     return bpy.context.scene
 
 
-def add_medium(
-    name: str, mesh: bpy.types.Mesh, medium: SimpleNamespace, priority: int | None = None
-) -> bpy.types.Object:
-    """Put a medium into the scene, of its preset but for the colour and the depth that its description may give."""
+def medium(name: str, described: SimpleNamespace) -> bpy.types.Material:
+    """Return a material of what is described: of its preset, but for the colour and the depth of its own that it may have."""
     values = {"shadow_mode": "BLACK"}  # light goes through by paths, so shadows leave it out
-    if getattr(medium, "colour", None) is not None:
-        values["transmittance"] = medium.colour
-    if getattr(medium, "depth", None) is not None:
-        values["transmittance_depth"] = medium.depth * MM
-    obj = add(name, mesh)
-    nd.assign(obj, nd.new_material(name, preset=medium.preset, **values), priority)
-    return obj
+    if getattr(described, "colour", None) is not None:
+        values["transmittance"] = described.colour
+    if getattr(described, "depth", None) is not None:
+        values["transmittance_depth"] = described.depth * MM
+    return nd.new_material(name, preset=described.preset, **values)
 
 
 def arguments(parser: argparse.ArgumentParser) -> argparse.Namespace:
@@ -129,6 +128,7 @@ def main() -> None:
         parser.exit(2, f"product_shot.py: {error}\n")
     scene.render.resolution_percentage = options.percentage
     if options.save:
+        options.save.absolute().parent.mkdir(parents=True, exist_ok=True)
         bpy.ops.wm.save_as_mainfile(filepath=str(options.save.absolute()))
     for frame in range(first, last + 1) if options.output else ():
         scene.frame_set(frame)

@@ -55,10 +55,10 @@ def surface(name: str, colour: list[float], roughness: float) -> bpy.types.Mater
     return material
 
 
-def add_backdrop(size: float, light: SimpleNamespace, rig: bpy.types.Object) -> None:
+def add_backdrop(size: float, distance: float, light: SimpleNamespace, rig: bpy.types.Object) -> None:
     """Hang up a sheet that is table in front and wall behind, without a horizon, with a glow behind the product."""
     bend = [(3 + 2 * sin(angle), 2 - 2 * cos(angle)) for angle in np.linspace(0, pi / 2, 24)]
-    side = [(-8, 0), (0, 0), *bend, (5, 12)]
+    side = [(-1.5 * max(5, distance / size), 0), (0, 0), *bend, (5, 12)]
     vertices = [(x * size, y * size, z * size) for x in (-12, 12) for y, z in side]
     faces = [(i, i + len(side), i + len(side) + 1, i + 1) for i in range(len(side) - 1)]
     sheet = bpy.data.meshes.new("Backdrop")
@@ -92,7 +92,7 @@ def add_studio(shot: SimpleNamespace) -> None:
     size = max(height for _, height, _ in shot.vessel.outside) * MM
     middle = Vector((0, 0, 0.5 * size))
     rig = add("Studio", None)
-    add_backdrop(size, shot.light, rig)
+    add_backdrop(size, shot.camera.distance * MM, shot.light, rig)
     for place, width, height in SOFTBOXES:
         add_softbox(Vector(place) * size, middle, width * size, height * size, 16 * shot.light.softboxes, rig)
     add_camera(shot.camera, middle if shot.camera.aim is None else Vector((0, 0, shot.camera.aim * MM)), rig)

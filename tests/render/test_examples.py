@@ -143,7 +143,7 @@ def test_a_wrong_description_ends_with_2_and_one_line_and_leaves_nothing(tmp_pat
 
 
 def test_a_turntable_is_rendered_and_its_scene_kept(tmp_path):
-    pictures, file = tmp_path / "out" / "shot_##.png", tmp_path / "shot.blend"
+    pictures, file = tmp_path / "out" / "shot_##.png", tmp_path / "new" / "shot.blend"
     small = ("--percentage", 5, "--samples", 2, "--frames", "1-2")
     done = run("product_shot.py", EXAMPLES / "tumbler.json", "-o", pictures, "--save", file, *small)
     assert done.returncode == 0, done.stderr
