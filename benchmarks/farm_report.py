@@ -25,7 +25,7 @@ from farm_model import (
     simulate,
 )
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results" / "farm.json"
@@ -304,7 +304,7 @@ def plot(result: dict, path: Path) -> None:
         axis.set_yscale("log")
         for side in (axis.xaxis, axis.yaxis):
             side.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-            side.set_major_formatter(ScalarFormatter())
+            side.set_major_formatter(StrMethodFormatter("{x:g}"))
             side.set_minor_formatter(NullFormatter())
         axis.grid(alpha=0.3)
         axis.legend()

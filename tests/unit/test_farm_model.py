@@ -69,10 +69,10 @@ def test_a_task_that_begins_again_takes_as_long_as_the_closed_form_says(failures
 
 @pytest.mark.parametrize("failures", [2.0, 10.0])
 def test_a_chunk_whose_finished_frames_are_kept_takes_as_long_as_the_closed_form_says(failures):
-    farm = Farm(1, failures, away=60.0)
-    found = [simulate(USUAL, 12, farm, chunk=12, seed=seed).seconds for seed in range(RUNS)]
-    assert agrees(found, farm_model.kept_seconds(USUAL, 12, failures, 60.0))
-    assert not agrees(found, farm_model.retried_seconds(USUAL.chunk_seconds(12), failures, 60.0))
+    farm, job = Farm(1, failures, away=60.0), replace(USUAL, once=100.0)
+    found = [simulate(job, 12, farm, chunk=12, seed=seed).seconds for seed in range(RUNS)]
+    assert agrees(found, farm_model.kept_seconds(job, 12, failures, 60.0))
+    assert not agrees(found, farm_model.retried_seconds(job.chunk_seconds(12), failures, 60.0))
 
 
 @pytest.mark.parametrize(
@@ -99,6 +99,14 @@ def test_what_machines_worked_is_what_was_needed_and_what_was_lost(ranges):
     one = ranges * USUAL.range_seconds(ranges) + USUAL.merge_seconds(ranges)
     assert found.lost > 0.0
     assert found.busy == approx(200 * one + found.lost)
+
+
+def test_frames_that_are_kept_are_not_lost_but_their_start_is():
+    kept, again = (simulate(USUAL, 200, Farm(20, failures=2.0), chunk=10, keeps=keeps) for keeps in (True, False))
+    for found in (kept, again):
+        assert found.busy == approx(20 * USUAL.chunk_seconds(10) + found.lost)
+    assert kept.failures * USUAL.once < kept.lost < kept.failures * USUAL.chunk_seconds(1)
+    assert again.lost > 2.0 * kept.lost
 
 
 def test_no_farm_is_faster_than_its_work_nor_slower_than_the_bound_of_any_list():
