@@ -37,14 +37,14 @@ def _run(options: argparse.Namespace) -> None:
     with json_report(options, RENDER_SCHEMA) as report, ExitStack() as undo:
         report |= {"scene": None, "changes": [], "problems": [], "frames": []}
         frames = _frames(options)
-        order = [str(absolute(frame.path)) for frame in frames]
-        undo.callback(lambda: report["frames"].sort(key=lambda done: order.index(done["path"])))
+        order = {str(absolute(frame.path)): place for place, frame in enumerate(frames)}
+        undo.callback(lambda: report["frames"].sort(key=lambda done: order[done["path"]]))
         _require_options(options, frames)
         scene = open_file(options.file, options.scene)
         report["scene"] = scene.name
         _choose(scene, options, undo)
         require_frames(scene, frames, options.samples)
-        there = [frame for frame in frames if options.skip_existing and is_there(scene, frame)]
+        there = {frame: None for frame in frames if options.skip_existing and is_there(scene, frame)}
         if there:
             print(f"{len(there)} of {len(frames)} frames are there already and are skipped", flush=True)
             skipped = (Rendered(number_of(scene, frame), absolute(frame.path), State.SKIPPED) for frame in there)
@@ -67,12 +67,12 @@ def _render(
     :raises Failure: if one fails.
     """
     progress = ProgressLine(len(frames))
-    numbered = options.frames is not None
+    numbered, several = options.frames is not None, len(options.frames or ()) > 1
     for place, rendered in enumerate(render_frames(scene, frames, options.samples, progress, numbered), start=1):
         done.append(_as_json(rendered))
         if rendered.state == State.FAILED:
-            raise Failure(rendered.reason if progress.alone else f"frame {rendered.number}: {rendered.reason}")
-        print(rendered.path if progress.alone else line_of(rendered, place, len(frames)), flush=True)
+            raise Failure(f"frame {rendered.number}: {rendered.reason}" if several else rendered.reason)
+        print(line_of(rendered, place, len(frames)) if several else rendered.path, flush=True)
 
 
 def _frames(options: argparse.Namespace) -> list[Frame]:

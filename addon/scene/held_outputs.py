@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -14,6 +15,12 @@ from .meanwhile import set_meanwhile, set_path_meanwhile
 from .output import check_picture
 from .passes import file_outputs
 from .render_error import RenderError
+
+_OWN_NAME = "{node_name}"
+"""What stands for a node's name in its folder. Paths of scenes, which tell what other words stand for, do not know it."""
+
+_PLAIN_NAME = re.compile(r"\w[\w .-]*")
+"""Names that folders bear as they are."""
 
 
 @contextmanager
@@ -63,10 +70,13 @@ def require_output_folders(scene: bpy.types.Scene) -> None:
 
 
 def _folder(scene: bpy.types.Scene, node: bpy.types.CompositorNodeOutputFile) -> Path | None:
-    """Return where a File Output node writes; None where its own name is part of that, which scenes cannot tell."""
-    if "{node_name}" in node.directory:
-        return None
-    with set_meanwhile(scene.render, filepath=f"{node.directory}/x"):
+    """Return where a File Output node writes; None where its own name is part of that, which Blender would write otherwise."""
+    directory = node.directory
+    if _OWN_NAME in directory:
+        if "{{" in directory or not _PLAIN_NAME.fullmatch(node.name):
+            return None
+        directory = directory.replace(_OWN_NAME, node.name)
+    with set_meanwhile(scene.render, filepath=f"{directory}/x"):
         try:
             return Path(scene.render.frame_path(frame=scene.frame_current)).parent
         except RuntimeError as error:

@@ -17,6 +17,7 @@ from nested_dielectric.scene import devices, frame_sequences
 from nested_dielectric.scene.chosen_view import layer_alone, through_camera
 from nested_dielectric.scene.frame_sequences import Frame, render_frames
 from nested_dielectric.scene.output import check_picture, save_blend
+from nested_dielectric.scene.render_error import RenderError
 
 
 @pytest.fixture(scope="module")
@@ -37,10 +38,10 @@ def small(tmp_path_factory):
     return save_blend(tmp_path_factory.mktemp("small") / "small.blend")
 
 
-@pytest.mark.parametrize("keeps_data", mostly_again([False, True]))
-@pytest.mark.parametrize("arguments", mostly_again([(), ("--backend", "native"), ("--no-cut",)]))
-def test_each_frame_of_a_sequence_is_that_of_a_run_of_its_own(arguments, keeps_data, ball, tmp_path, monkeypatch):
+@pytest.mark.parametrize("way", mostly_again([((), False), ((), True), (("--backend", "native"), True)]))
+def test_each_frame_of_a_sequence_is_that_of_a_run_of_its_own(way, ball, tmp_path):
     """Also where Cycles keeps what it has of a scene from one frame to the next."""
+    arguments, keeps_data = way
     file = tmp_path / "ball.blend"
     bpy.ops.wm.open_mainfile(filepath=str(ball))
     bpy.context.scene.render.use_persistent_data = keeps_data
@@ -235,6 +236,28 @@ def test_files_of_the_compositor_have_each_frames_number_as_blender_gives_it_to_
     scene.frame_start, scene.frame_end, scene.render.filepath = 1, 2, f"{tmp_path}/x_"
     bpy.ops.render.render(animation=True)
     assert names(tmp_path / "ours") == names(tmp_path / "blender") and len(names(tmp_path / "ours")) == 2
+
+
+def test_files_in_a_folder_of_their_nodes_name_are_whole_or_not_written_too(tmp_path, full_on_frame_two):
+    scene = stripes(32)
+    with_writer(scene, f"{tmp_path}/{{node_name}}/", "s_").name = "Beauty.1"
+    (tmp_path / "Beauty.1").mkdir()
+    (tmp_path / "Beauty.1" / "s_0002.png").write_bytes(OLD)
+    states = [each.state for each in render_frames(scene, [Frame(k, tmp_path / f"x_{k}.png") for k in (1, 2)])]
+    assert states == ["written", "failed"]
+    files = ["Beauty.1/s_0001.png", "Beauty.1/s_0002.png"]
+    assert names(tmp_path) == ["Beauty.1", *files, "x_1.png"]
+    assert (tmp_path / files[1]).read_bytes() == OLD
+
+
+def test_a_view_layer_that_the_compositor_needs_is_not_left_out(small):
+    bpy.ops.wm.open_mainfile(filepath=str(small))
+    scene = bpy.context.scene
+    with_writer(scene, "//", "x")
+    with pytest.raises(RenderError, match="'ViewLayer', too"), layer_alone(scene, scene.view_layers["Second"]):
+        pass
+    with layer_alone(scene, scene.view_layers["ViewLayer"]):
+        assert [layer.use for layer in scene.view_layers] == [True, False]
 
 
 def test_a_folder_of_passes_that_cannot_be_written_is_named_before_the_work(tmp_path, capfd):
