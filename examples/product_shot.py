@@ -12,17 +12,22 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))  # Blender leaves out a script's own folder
 
+import bpy
+
 try:
     import nested_dielectric as nd  # beside the bpy wheel
-except ModuleNotFoundError:
-    from bl_ext.user_default import nested_dielectric as nd  # installed in Blender
+except ModuleNotFoundError:  # installed in Blender, from whichever repository
+    names = [addon.module for addon in bpy.context.preferences.addons if addon.module.endswith(".nested_dielectric")]
+    if not names:
+        sys.exit("Nested Dielectric is not enabled: install it in Edit > Preferences > Get Extensions")
+    nd = import_module(names[0])
 
-import bpy
 from bodies import MM, height_at, ice_cube, ice_places, liquid_outline, rounded, turned
 from description import DescriptionError, read_shot
 from studio import add, add_studio, set_render

@@ -6,7 +6,9 @@ from urllib.parse import unquote
 
 ROOT = Path(__file__).resolve().parents[2]
 PICTURES = ROOT / "docs" / "pictures"
-PAGES = (ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md")))
+PAGES = tuple(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "examples/README.md")) + tuple(
+    sorted((ROOT / "docs").glob("*.md"))
+)
 
 LINK = re.compile(r"\[[^]]*\]\(([^)\s]+)\)")
 
