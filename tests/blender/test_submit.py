@@ -26,6 +26,9 @@ def file(tmp_path_factory) -> Path:
     scene.cycles.use_denoising = True
     scene.render.image_settings.file_format = "PNG"
     bpy.data.scenes.new("Empty")
+    other = bpy.data.scenes.new("Other")
+    other.collection.objects.link(scene.camera)
+    other.camera = scene.camera
     return save_blend(tmp_path_factory.mktemp("file") / "ball.blend")
 
 
@@ -97,6 +100,12 @@ def test_a_job_says_what_was_asked_for(file, tmp_path):
     assert command(said, "Check") == ["check", "--strict"]
     assert {"--camera=Camera", "--view-layer=ViewLayer", "--device=CPU"} <= set(command(said, "Render"))
     assert openjd("check", tmp_path / "job" / "template.json").returncode == 0
+
+
+def test_the_file_of_a_job_opens_with_the_scene_that_was_named(file, tmp_path):
+    submit(file, tmp_path / "job", "--scene", "Other")
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "job" / "scene.blend"))
+    assert bpy.context.scene.name == "Other"
 
 
 def test_frames_that_are_named_twice_are_rendered_once(file, tmp_path):
