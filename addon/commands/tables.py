@@ -19,7 +19,7 @@ from ..model.spectra import WAVELENGTHS
 from ..model.spectral_tables import spectral_table
 from ..model.spectrum_plots import plot
 from ..nodes.working_space import working_gamut
-from ..scene.output import check_picture, reason
+from ..scene.output import check_picture, picture_files, reason
 from ..scene.preset_library import catalogue
 from .shared import PROGRAM, AddParser, Failure, file_name
 
@@ -108,8 +108,7 @@ def _draw(path: Path, distribution: str, table: np.ndarray) -> bytes:
 
 
 def _write_table(draft: Path, path: Path, table: np.ndarray, metadata: dict[str, str | float | int]) -> None:
-    import OpenImageIO as oiio  # Blender's own copy
-
+    oiio = picture_files()
     picture = oiio.ImageSpec(len(table), 1, 4, oiio.FLOAT)
     picture.channelnames = ("R", "G", "B", "A")
     for name, value in metadata.items():

@@ -8,8 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import bpy
 import numpy as np
+
+from ..scene.output import picture_files
 
 BAND = 64
 """Rows at a time."""
@@ -25,9 +26,7 @@ def opened(path: Path) -> Iterator[Any]:
 
     :raises LayeredFileError: if it is no picture.
     """
-    bpy.utils.expose_bundled_modules()
-    import OpenImageIO as oiio  # Blender's own copy
-
+    oiio = picture_files()
     picture = oiio.ImageInput.open(os.fsencode(path))
     if picture is None:
         raise LayeredFileError(f"{path}: cannot be read ({' '.join(oiio.geterror().split())}); render it again")
@@ -42,8 +41,7 @@ def read_rows(picture: Any, begin: int, end: int) -> np.ndarray:
 
     :raises LayeredFileError: if the file is not whole.
     """
-    import OpenImageIO as oiio
-
+    oiio = picture_files()
     spec = picture.spec()
     rows = picture.read_scanlines(spec.y + begin, spec.y + end, 0, 0, spec.nchannels, oiio.FLOAT)
     if rows is None or picture.has_error:
@@ -57,8 +55,7 @@ def write(path: Path, spec: Any, rows: Callable[[int, int], np.ndarray]) -> None
     :param rows: returns those from a first up to a last, which is left out; (rows, width, channels).
     :raises LayeredFileError: if it cannot be written.
     """
-    import OpenImageIO as oiio
-
+    oiio = picture_files()
     output = oiio.ImageOutput.create("exr")
     done = output.open(os.fsencode(path), spec)
     for begin in range(0, spec.height, BAND) if done else ():

@@ -8,6 +8,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ..scene.output import picture_files
 from .layered_files import opened, read_rows, write
 
 _MOTION = tuple(f"Vector.{axis}" for axis in "XYZW")
@@ -31,8 +32,8 @@ def denoise(file: Path, scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> N
     :raises DenoiseError: if Cycles cannot.
     """
     import _cycles
-    import OpenImageIO as oiio
 
+    oiio = picture_files()
     turned, clean = (file.with_name(f"{file.stem}_{word}.exr") for word in ("turned", "clean"))
     with opened(file) as picture:
         spec = oiio.ImageSpec(picture.spec())
@@ -64,8 +65,7 @@ def _motion(names: tuple[str, ...]) -> list[str]:
 
 def _with_channels(spec: Any, names: tuple[str, ...]) -> Any:
     """Return a copy of an OpenImageIO ``ImageSpec`` with channels of these names."""
-    import OpenImageIO as oiio
-
+    oiio = picture_files()
     copy = oiio.ImageSpec(spec)
     copy.nchannels, copy.channelnames, copy.channelformats = len(names), names, ()
     return copy

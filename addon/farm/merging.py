@@ -14,7 +14,7 @@ import numpy as np
 
 from ..model.files import absolute, replacing
 from ..model.frames import parse_samples
-from ..scene.output import check_picture
+from ..scene.output import check_picture, picture_files
 from ..scene.sample_ranges import SAMPLES, tell_samples
 from .layered_files import opened, read_rows, write
 from .merged_denoising import denoise
@@ -130,8 +130,7 @@ def _merge(parts: Sequence[Part], draft: Path, output: Path) -> None:
 
 def _mend(parts: Sequence[Part], draft: Path, names: tuple[str, ...]) -> None:
     """Write a merged file anew with its passes mended."""
-    import OpenImageIO as oiio
-
+    oiio = picture_files()
     channels = plan(names)
     total = sum(len(part.samples) for part in parts)
     shares = [len(part.samples) / total for part in parts]

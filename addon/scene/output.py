@@ -9,12 +9,29 @@ import os
 import shutil
 from itertools import pairwise
 from pathlib import Path
+from types import ModuleType
 
 import bpy
 
 from ..model.files import WriteError, absolute, replacing
+from ..nodes.compatibility import UnsupportedError
 
 _PNG_END = b"IEND\xaeB`\x82"
+
+
+def picture_files() -> ModuleType:
+    """Return OpenImageIO, Blender's own copy of it.
+
+    :raises UnsupportedError: for a Blender that was built without.
+    """
+    bpy.utils.expose_bundled_modules()
+    try:
+        import OpenImageIO
+    except ImportError:
+        raise UnsupportedError(
+            "this Blender has no OpenImageIO for Python, which reads pictures back; use the build from blender.org"
+        ) from None
+    return OpenImageIO
 
 
 def check_picture(file: Path, path: Path | str, size: tuple[int, int] | None = None, channels: int = 1) -> None:
@@ -25,9 +42,7 @@ def check_picture(file: Path, path: Path | str, size: tuple[int, int] | None = N
     :param channels: how many channels it must have at least.
     :raises WriteError: if it does not.
     """
-    bpy.utils.expose_bundled_modules()
-    import OpenImageIO as oiio  # Blender's own copy
-
+    oiio = picture_files()
     picture = oiio.ImageInput.open(os.fsencode(file))
     if picture is None:
         raise WriteError(f"{path}: was not written whole ({reason(oiio.geterror(), file, path)}); is the disk full?")

@@ -14,7 +14,7 @@ from ..model.files import absolute, ending_at_once, replacing
 from .held_outputs import file_outputs_held_back
 from .image_formats import CHANNELS, file_format_of, image_format
 from .meanwhile import set_meanwhile, set_path_meanwhile
-from .output import check_picture, reason
+from .output import check_picture, picture_files, reason
 from .progress import reporting_samples
 from .render_error import RenderError
 from .sample_ranges import rendering_part, require_part, tell_samples
@@ -87,6 +87,7 @@ def require_picture(scene: bpy.types.Scene, output: Path | str, samples: int | r
     :raises RenderError: if not, or if no picture would be written.
     """
     file_format_of(output)
+    picture_files()
     if scene.camera is None:
         raise RenderError(f"scene {scene.name!r} has no camera; add one and make it active")
     if not any(layer.use for layer in scene.view_layers):

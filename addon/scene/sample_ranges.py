@@ -13,7 +13,7 @@ import bpy
 from ..model.files import WriteError
 from .image_formats import LAYERS_FORMAT, image_format
 from .meanwhile import set_meanwhile
-from .output import reason
+from .output import picture_files, reason
 from .passes import compositors
 from .render_error import RenderError
 
@@ -88,9 +88,7 @@ def tell_samples(file: Path, path: Path | str, samples: range) -> None:
     :param path: what the file is to be called.
     :raises WriteError: if the file cannot be read or written.
     """
-    bpy.utils.expose_bundled_modules()
-    import OpenImageIO as oiio  # Blender's own copy
-
+    oiio = picture_files()
     name = os.fsencode(file)
     picture = oiio.ImageInput.open(name)
     if picture is None:

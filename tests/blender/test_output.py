@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import sys
 from pathlib import Path
 
 import bpy
@@ -50,6 +51,13 @@ def test_a_picture_that_was_cut_off_is_not_taken_for_whole(ending, tmp_path):
 def test_numbers_out_of_range_are_errors_rather_than_others(limits, tmp_path):
     with pytest.raises(RenderError, match="must be"):
         render_frame(stripes(), tmp_path / "x.png", **limits)
+    assert not names(tmp_path)
+
+
+def test_a_blender_that_cannot_read_pictures_back_says_so_before_rendering(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "OpenImageIO", None)  # as Debian's Blender is built
+    with pytest.raises(nd.UnsupportedError, match="no OpenImageIO for Python.*use the build from blender"):
+        render_frame(stripes(), tmp_path / "x.png")
     assert not names(tmp_path)
 
 
