@@ -148,5 +148,7 @@ def test_parts_of_several_view_layers_are_told_what_they_hold(tmp_path):
     scene.view_layers.new("Second.samples")
     render_frame(scene, tmp_path / "x.exr", range(1, 4))
     spec = oiio.ImageBuf(str(tmp_path / "x.exr")).spec()
-    counts = [each.value for each in spec.extra_attribs if each.name.endswith(".samples")]
+    counts = [
+        each.value for each in spec.extra_attribs if each.name.startswith("cycles.") and each.name.endswith(".samples")
+    ]
     assert counts == ["3", "3"]
