@@ -13,12 +13,13 @@ from ..cutting.cut_plan import CutReport
 from ..cutting.cut_scene import last_cut
 from ..cutting.needs import Need, find_needs, material_users, unchanging_values
 from ..model.effects import limits_at_work
+from ..nodes.animation import curves
 from ..nodes.compatibility import MINIMUM_VERSION, NATIVE_DISPERSION_VERSION
 from ..nodes.render_settings import engine_name
 from ..nodes.render_with import is_native
 from ..scene.debug_views import debug_notice
-from ..scene.materials import may_disperse, rendered_node
-from ..scene.media import dispersing_materials
+from ..scene.materials import may_disperse, medium_material, rendered_node
+from ..scene.media import dispersing_materials, is_rendered, media
 from ..scene.scripts import frame_scripts
 
 VERSIONS = ("5.2", "5.3")
@@ -87,7 +88,14 @@ def shader_needs(scene: bpy.types.Scene) -> list[Need]:
     """Return why only the shader renders media of a scene as it is prepared; nothing where Cycles' own nodes are to."""
     if is_native(scene) or scene.render.engine != "CYCLES":
         return []
-    return find_needs(scene, last_cut(scene) or CutReport(), last_found(scene))
+    return [*find_needs(scene, last_cut(scene) or CutReport(), last_found(scene)), *_appearing_media(scene)]
+
+
+def _appearing_media(scene: bpy.types.Scene) -> Iterator[Need]:
+    """Yield media that renders do not show on the present frame, and may on others."""
+    for obj in media(scene):
+        if not is_rendered(obj) and any(curve.data_path == "hide_render" for curve in curves(obj.animation_data)):
+            yield Need(obj.name, medium_material(obj).name, "may appear on another frame, and then must ask", True)
 
 
 def _versions(scene: bpy.types.Scene) -> tuple[str, ...]:

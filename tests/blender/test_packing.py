@@ -229,6 +229,18 @@ def test_what_machines_must_have_is_reported(tmp_path):
     assert found.devices == ("CPU", "GPU") and found.versions == (".".join(map(str, bpy.app.version[:2])),)
 
 
+def test_a_medium_that_appears_on_another_frame_needs_the_shader(tmp_path):
+    scene = new_scene(with_group=True)
+    add_crossing()
+    ball = add_sphere("Ball", 0.5, nd.new_material("Ice", ior=1.31), location=(5, 0, 0))
+    for frame, hidden in ((1, True), (2, False)):
+        ball.hide_render = hidden
+        ball.keyframe_insert("hide_render", frame=frame)
+    scene.frame_set(1)
+    _, packed = packed_away(tmp_path)
+    assert packed.needs[0].devices == ("CPU",) and "'Ball' may appear" in str(packed)
+
+
 def test_the_versions_in_reports_are_those_that_render_media():
     first, last = (tuple(map(int, name.split("."))) for name in (needs.VERSIONS[0], needs.VERSIONS[-1]))
     assert first == compatibility.MINIMUM_VERSION[:2]
