@@ -1,6 +1,11 @@
 """What the manual says of farms follows from what was measured."""
 
-import farm_plans  # noqa: F401  which finds the benchmarks
+import re
+import shlex
+import subprocess
+import sys
+
+import farm_plans
 import farm_report
 import pytest
 from pytest import approx
@@ -50,3 +55,24 @@ def test_a_job_adds_up_what_was_measured():
     larger = farm_report.job_of(result, "ball", "osl", cores=4, larger=16)
     assert larger.samples == approx(256 * job.samples)
     assert larger.once == job.once
+
+
+def test_the_command_of_the_page_says_how_long_it_takes_and_what_it_costs():
+    (command,) = re.findall(
+        r"^python (benchmarks/farm_model.py .*)$", farm_report.PAGE.read_text(encoding="utf-8"), re.M
+    )
+    root = farm_report.PAGE.parents[1]
+    done = subprocess.run([sys.executable, *shlex.split(command)], cwd=root, capture_output=True, text=True, check=True)
+    split, failures = done.stdout.splitlines()
+    assert re.fullmatch(r"\d+ frames a task: \d+ min, [\d.]+ machine hours, price [\d.]+", split)
+    assert re.fullmatch(r"\d+ failures, [\d.]+ machine hours lost", failures)
+
+
+@pytest.mark.parametrize("wrong", ["--frames 0", "--machines 0", "--once -1", "--failures -0.1"])
+def test_numbers_that_no_farm_has_are_refused(wrong, capsys, monkeypatch):
+    given = "--frames 1 --machines 1 --once 1 --frame 1 --samples 1"
+    monkeypatch.setattr(sys, "argv", ["farm_model.py", *given.split(), *wrong.split()])
+    with pytest.raises(SystemExit) as stop:
+        farm_plans.farm_model.main()
+    assert stop.value.code == 2
+    assert "are 1 at least" in capsys.readouterr().err
