@@ -157,8 +157,8 @@ def busy(result: dict) -> str:
     starts = [
         run["steps"]["start"] for found in result["scenes"].values() for runs in found["ways"].values() for run in runs
     ]
-    waited = statistics.median(wall / cpu for cpu, wall in starts)
-    return "" if waited < 1.2 else f". Other work ran meanwhile: on the wall starts took {waited:.1f} times as long"
+    waited = statistics.fmean(wall / cpu for cpu, wall in starts)
+    return "" if waited < 1.1 else f". Other work ran meanwhile: on the wall starts took {waited:.1f} times as long"
 
 
 def spread_cell(values: Sequence[float], places: int) -> str:
