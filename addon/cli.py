@@ -2,8 +2,8 @@
 
 Blender takes only identifiers for commands, hence the underscore there.
 
-Exit codes: 0 done, 1 failed, 2 wrong usage, 3 something is wrong with the file that was checked; Ctrl-C ends it as it ends
-other programs, which shells report as 130.
+Exit codes: 0 done, 1 failed, 2 wrong usage, 3 something is wrong with the file, for which nothing was written; Ctrl-C ends
+it as it ends other programs, which shells report as 130.
 """
 
 from __future__ import annotations
