@@ -38,6 +38,7 @@ def _prepare(options: argparse.Namespace) -> int:
     preparation = prepare(scene, options.cut, options.backend)
     if is_refused(preparation.findings, options.check):
         print("\n".join(in_lines(scene.name, preparation.findings)))
+        print("nothing was written")
         return FOUND
     print(preparation)
     if options.cut:

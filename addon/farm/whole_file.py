@@ -45,7 +45,8 @@ def pack_files() -> list[str]:
     before = _packed()
     with suppress(RuntimeError):  # files that are missing, which Blender names after it has packed all others
         bpy.ops.file.pack_all()
-    return changes + [f"{data.name}: its file is packed" for data in bpy.data.user_map() if data in _packed() - before]
+    names = sorted(data.name for data in _packed() - before)
+    return changes + [f"{name}: its file is packed" for name in names]
 
 
 def _packed() -> set[bpy.types.ID]:
@@ -62,8 +63,9 @@ def _take_in_photometry() -> Iterator[tuple[str, str]]:
                 continue
             path = Path(bpy.path.abspath(node.filepath))
             with suppress(OSError):
+                lines = path.read_text(encoding="latin-1")
                 text = bpy.data.texts.new(path.name)
-                text.from_string(path.read_text(encoding="latin-1"))
+                text.from_string(lines)
                 node.mode, node.ies = "INTERNAL", text
                 yield owner.name, path.name
 

@@ -76,7 +76,7 @@ FACTS_SCENE = "nd_told"
 Cycles' own nodes go by it, as they cannot probe the scene where facts do not hold.
 """
 
-LEFT_TO_SHADER = -1.0
+LEFT_TO_SHADER = -2.0
 """Its value where Cycles' own nodes are to show the alarm, whatever they are told: only the shader is right."""
 
 CENTRE = "nd_centre"

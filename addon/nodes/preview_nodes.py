@@ -30,7 +30,7 @@ EDGE_STRENGTH = 3.0
 """Of edges, by how far the ratio of both indices is from 1."""
 
 NOWHERE = -1.0
-"""Number of a scene in which no volume absorbs."""
+"""Number of a scene in which no volume absorbs; that of LEFT_TO_SHADER is another."""
 
 MOST_GIVEN_BACK = 3.0
 """Exponent of what a surface may give back of the colour of the medium that it displaces."""

@@ -78,7 +78,7 @@ class Surroundings(NativePart):
     @cached_property
     def may_render(self) -> Number:
         """1 unless the scene leaves its media to the shader alone, and 0 for the alarm."""
-        return self.raw("Scene") > 0.5 * LEFT_TO_SHADER
+        return self.raw("Scene") > LEFT_TO_SHADER + 0.5
 
     @cached_property
     def by_object(self) -> Number:
