@@ -14,6 +14,7 @@ from ..checking.check import check
 from ..checking.finding import Finding, to_json
 from ..checking.listing import STRICT, WRONG, in_lines, is_refused
 from ..fixing.fix import fix_all
+from ..model.files import require_place
 from ..model.streams import log_to_stderr
 from ..scene.output import save_blend
 from .shared import FOUND, AddParser, Failure, add_file, blend_name, open_file
@@ -39,6 +40,8 @@ def _run(options: argparse.Namespace) -> int:
     """
     if options.fix and options.output is None:
         raise Failure("--fix needs a file to write: name it with --output")
+    if options.fix:
+        require_place(options.output)
     with log_to_stderr() if options.json else nullcontext(sys.stdout) as output:
         open_file(options.file)
         changes = {scene.name: list(fix_all(scene).changes) if options.fix else [] for scene in bpy.data.scenes}

@@ -8,6 +8,7 @@ from pathlib import Path
 import bpy
 
 from ..demo.iced_water import build_scene
+from ..model.files import require_place
 from ..nodes.compatibility import require_blender
 from ..nodes.render_with import OSL
 from ..preparation.prepare_scene import prepare
@@ -35,6 +36,8 @@ def _run(options: argparse.Namespace) -> None:
     """Model the glass of iced water, render it and say what cutting it saves."""
     require_blender()
     file_format_of(options.output)  # before any work is done
+    for place in filter(None, (options.output, options.save)):
+        require_place(place)
     scene = build_scene()
     print(prepare(scene, cut=True), flush=True)
     if options.save:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
-from contextlib import nullcontext
 
 from ..farm.packing import pack
-from ..model.streams import log_to_stderr
-from .shared import FOUND, AddParser, add_backend, add_check, add_file, blend_name, open_file
+from .shared import FOUND, AddParser, add_backend, add_check, add_file, add_json, blend_name, json_report, open_file
+
+PACK_SCHEMA = 1
+"""Version of the JSON that ``pack`` writes; it is counted on when a key changes its meaning or goes."""
 
 
 def add_command(add_parser: AddParser) -> None:
@@ -31,7 +30,7 @@ def add_command(add_parser: AddParser) -> None:
         action="store_true",
         help="write the file though it needs others that are missing or cannot be packed; the report lists them",
     )
-    packing.add_argument("--json", action="store_true", help="write the report as JSON")
+    add_json(packing)
     packing.set_defaults(run=_run)
 
 
@@ -40,9 +39,9 @@ def _run(options: argparse.Namespace) -> int:
 
     :returns: 0, or :data:`FOUND` where nothing was written, as the file lacks something or ``--check`` found it wrong.
     """
-    with log_to_stderr() if options.json else nullcontext(sys.stdout) as output:
+    with json_report(options, PACK_SCHEMA) as report:
         open_file(options.file)
         packed = pack(options.output, options.cut, options.backend, options.check, options.keep_outside)
-        text = json.dumps(packed.as_json(), indent=2, ensure_ascii=False) if options.json else str(packed)
-        print(text, file=output, flush=True)
+        report |= packed.as_json()
+        print(packed, flush=True)
     return 0 if packed.saved else FOUND

@@ -7,6 +7,7 @@ import argparse
 import bpy
 
 from ..checking.listing import in_lines, is_refused
+from ..model.files import require_place
 from ..preparation.live import bake_cut
 from ..preparation.prepare_scene import prepare
 from ..preparation.versions import update_materials
@@ -35,6 +36,8 @@ def _prepare(options: argparse.Namespace) -> int:
     :returns: 0, or :data:`FOUND` where nothing was saved because of that.
     """
     scene = open_file(options.file)
+    output = options.output or bpy.data.filepath
+    require_place(output)
     preparation = prepare(scene, options.cut, options.backend)
     if is_refused(preparation.findings, options.check):
         print("\n".join(in_lines(scene.name, preparation.findings)))
@@ -48,7 +51,7 @@ def _prepare(options: argparse.Namespace) -> int:
             if hindrance
             else f"the cut of frame {scene.frame_current} is in the file"
         )
-    print(f"wrote {save_blend(options.output or bpy.data.filepath)}")
+    print(f"wrote {save_blend(output)}")
     return 0
 
 

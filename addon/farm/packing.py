@@ -15,7 +15,7 @@ from ..checking.finding import Finding, to_json
 from ..checking.listing import in_lines, is_refused
 from ..checking.version_checks import version_problems
 from ..cutting.cut_scene import is_cut
-from ..model.files import WriteError, absolute
+from ..model.files import WriteError, absolute, require_place
 from ..preparation import upkeep
 from ..preparation.live import bake_cut
 from ..preparation.prepare_scene import Preparation, prepare
@@ -25,9 +25,6 @@ from ..scene.output import save_blend
 from .needs import SceneNeeds, file_notes, needs_of, shader_needs
 from .outside import Lack, find_lacks
 from .whole_file import make_local, pack_files
-
-SCHEMA = 1
-"""Version of what :meth:`Packed.as_json` returns; it is counted on when a key changes its meaning or goes."""
 
 
 @dataclass(frozen=True)
@@ -50,8 +47,6 @@ class Packed:
     def as_json(self) -> dict[str, Any]:
         """Return it in JSON's types."""
         return {
-            "schema": SCHEMA,
-            "blender": bpy.app.version_string,
             "saved": None if self.saved is None else str(self.saved),
             "done": list(self.done),
             "lacks": [vars(lack) for lack in self.lacks],
@@ -92,6 +87,7 @@ def pack(
     """
     if absolute(output) == absolute(bpy.data.filepath):
         raise WriteError(f"{output}: is the file itself, which stays as it is; name another")
+    require_place(output)
     done = make_local() + pack_files()
     lacks = tuple(find_lacks())
     if lacks and not keep_outside:

@@ -56,7 +56,7 @@ def test_numbers_out_of_range_are_errors_rather_than_others(limits, tmp_path):
 
 def test_a_blender_that_cannot_read_pictures_back_says_so_before_rendering(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "OpenImageIO", None)  # as Debian's Blender is built
-    with pytest.raises(nd.UnsupportedError, match="no OpenImageIO for Python.*use the build from blender"):
+    with pytest.raises(nd.UnsupportedError, match=r"no OpenImageIO for Python.*use the build from blender"):
         render_frame(stripes(), tmp_path / "x.png")
     assert not names(tmp_path)
 

@@ -307,3 +307,13 @@ def test_a_strict_check_refuses_what_is_slow_too(tmp_path):
         run("prepare", file, "-o", tmp_path / "a.blend", "--check", level).returncode for level in ("wrong", "strict")
     ]
     assert codes == [0, 3]
+
+
+def test_a_place_that_cannot_be_written_is_named_before_the_work(tmp_path):
+    file = save_scene(tmp_path)
+    (tmp_path / "out.blend").mkdir()
+    for command in (["pack"], ["prepare"], ["check", "--fix"]):
+        done = run(*command, file, "-o", tmp_path / "out.blend")
+        said = [line for line in done.stdout.splitlines() if line and "|" not in line]  # but for Blender's log
+        assert done.returncode == 1 and not said
+        assert_one_line(done.stderr, "out.blend: cannot be written, as it is a folder")
