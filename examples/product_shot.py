@@ -131,6 +131,8 @@ def main() -> None:
         scene = prepared(build(shot))
     except DescriptionError as error:
         parser.exit(2, f"product_shot.py: {error}\n")
+    except nd.UnsupportedError as error:
+        parser.exit(1, f"product_shot.py: {error}\n")
     scene.render.resolution_percentage = options.percentage
     if options.save:
         options.save.absolute().parent.mkdir(parents=True, exist_ok=True)
