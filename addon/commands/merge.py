@@ -9,10 +9,9 @@ from pathlib import Path
 
 import bpy
 
-from ..farm.merging import merge
-from ..model.files import WriteError, absolute
+from ..farm.merging import is_merged, merge, require_apart
+from ..model.files import absolute
 from ..model.frames import has_number, parse_frames, path_of_frame
-from ..scene.output import check_picture
 from .shared import AddParser, Failure, add_scene, blend_name, file_name, open_file, parsed
 
 KEEP, REMOVE = "keep", "remove"
@@ -37,7 +36,7 @@ def add_command(add_parser: AddParser) -> None:
     )
     add_scene(merging)
     merging.add_argument(
-        "--skip-existing", action="store_true", help="leave out frames whose picture is there and whole"
+        "--skip-existing", action="store_true", help="leave out frames whose picture is there, whole and of these parts"
     )
     merging.add_argument(
         "--parts",
@@ -60,7 +59,8 @@ def _run(options: argparse.Namespace) -> None:
         output, *parts = (
             path if frame is None else path_of_frame(path, frame) for path in (options.output, *options.parts)
         )
-        if options.skip_existing and _is_whole(output):
+        require_apart(parts, output)
+        if options.skip_existing and is_merged(parts, output):
             print(f"{output} is there")
         else:
             samples = merge(parts, output, denoised)
@@ -79,16 +79,6 @@ def _denoised(file: Path, name: str | None) -> tuple[bpy.types.Scene, bpy.types.
     if not (scene.cycles.use_denoising and layers):
         raise Failure(f"{file}: scene {scene.name!r} does not denoise; leave out --denoise")
     return scene, layers[0]
-
-
-def _is_whole(path: Path) -> bool:
-    if not path.is_file():
-        return False
-    try:
-        check_picture(path, path)
-    except WriteError:
-        return False
-    return True
 
 
 def _remove(parts: Sequence[Path]) -> None:

@@ -16,6 +16,9 @@ _MOTION = tuple(f"Vector.{axis}" for axis in "XYZW")
 
 _NORMAL = ".Denoising Normal.X"
 
+DENOISED = "nested_dielectric.denoised"
+"""Metadata of what is denoised, with which nothing can be merged any more."""
+
 
 class DenoiseError(RuntimeError):
     """A file that Cycles cannot denoise."""
@@ -52,6 +55,7 @@ def denoise(file: Path, scene: bpy.types.Scene, layer: bpy.types.ViewLayer) -> N
         raise DenoiseError(f"scene {scene.name!r}: the merged picture cannot be denoised ({error})") from None
     with opened(clean) as picture:
         places = [picture.spec().channelnames.index(name) for name in names]
+        spec.attribute(DENOISED, 1)
         _turn(picture, file, spec, 0, places)
     for each in (turned, clean):
         each.unlink()

@@ -12,12 +12,12 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from ..model.files import absolute, replacing
+from ..model.files import WriteError, absolute, replacing
 from ..model.frames import parse_samples
 from ..scene.output import check_picture, picture_files
 from ..scene.sample_ranges import SAMPLES, tell_samples
-from .layered_files import opened, read_rows, write
-from .merged_denoising import denoise
+from .layered_files import LayeredFileError, opened, read_rows, write
+from .merged_denoising import DENOISED, denoise
 from .merged_passes import mend, plan
 
 _SAME = ("Scene", "Frame", "Camera")
@@ -39,6 +39,7 @@ class Part:
     channels: tuple[str, ...]
     told: dict[str, str]
     """What it says of the picture."""
+    denoised: bool = False
 
 
 def merge(
@@ -53,6 +54,7 @@ def merge(
     """
     if output.suffix.lower() != ".exr":
         raise MergeError(f"{output}: the ending must be .exr")
+    require_apart(paths, output)
     parts = sorted(map(_part, paths), key=lambda part: part.samples.start)
     _require_one_picture(parts)
     samples = range(parts[0].samples.start, parts[-1].samples.stop)
@@ -63,6 +65,35 @@ def merge(
             denoise(draft, *denoised)
         check_picture(draft, output, parts[0].size, len(parts[0].channels))
     return samples
+
+
+def require_apart(paths: Sequence[Path], output: Path) -> None:
+    """Make sure that no part lies where the picture is to go.
+
+    :raises MergeError: if one does.
+    """
+    if absolute(output) in map(absolute, paths):
+        raise MergeError(f"{output}: is one of the parts, which would be lost; name another file")
+
+
+def is_merged(paths: Sequence[Path], output: Path) -> bool:
+    """Return whether a file is a whole picture that holds the samples of those parts that are still there."""
+    if not output.is_file():
+        return False
+    try:
+        check_picture(output, output)
+        whole = _part(output)
+        return all(_holds(whole, _part(path)) for path in paths if path.is_file())
+    except (LayeredFileError, MergeError, WriteError):
+        return False
+
+
+def _holds(whole: Part, part: Part) -> bool:
+    return (
+        (whole.size, set(whole.channels)) == (part.size, set(part.channels))
+        and all(whole.told[key] == part.told[key] for key in whole.told.keys() & part.told.keys())
+        and whole.samples.start <= part.samples.start < part.samples.stop <= whole.samples.stop
+    )
 
 
 def _part(path: Path) -> Part:
@@ -78,9 +109,8 @@ def _part(path: Path) -> Part:
         found = spec.width, spec.height, tuple(spec.channelnames)
     if not re.fullmatch(r"\d+:\d+", told.get(SAMPLES, "")):
         raise MergeError(f"{path}: says not which samples it holds; render it with --samples A:B")
-    return Part(
-        path, parse_samples(told[SAMPLES]), found[:2], found[2], {key: told[key] for key in _SAME if key in told}
-    )
+    same = {key: told[key] for key in _SAME if key in told}
+    return Part(path, parse_samples(told[SAMPLES]), found[:2], found[2], same, DENOISED in told)
 
 
 def _require_one_picture(parts: Sequence[Part]) -> None:
@@ -91,6 +121,11 @@ def _require_one_picture(parts: Sequence[Part]) -> None:
     if len(parts) < 2:
         raise MergeError("there is nothing to merge; name two parts at least")
     first = parts[0]
+    for part in parts:
+        if part.denoised:
+            raise MergeError(
+                f"{part.path}: is denoised, so that nothing can be added to it; merge its parts and all others at once"
+            )
     for part in parts[1:]:
         if part.size != first.size:
             text = " and ".join(f"{width} x {height}" for width, height in (first.size, part.size))

@@ -206,3 +206,36 @@ def test_frames_are_merged_each_from_its_parts_and_those_that_are_there_are_left
     assert names(tmp_path) == ["0001.exr", "0002.exr"] and (tmp_path / "0001.exr").stat().st_mtime_ns == written
     assert cli.main(["merge", *map(str, named), "-o", "x.exr", "--frames", "1-2"]) == 1
     assert "put #### in its name" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("skip", [(), ("--skip-existing",)])
+def test_a_picture_never_takes_the_place_of_a_part_and_goes_with_it(skip, parts, tmp_path, capsys):
+    paths = [tmp_path / "a.exr", tmp_path / "b.exr"]
+    for path, each in zip(paths, ("0-3", "3-8")):
+        path.write_bytes((parts / f"{each}.exr").read_bytes())
+    before = paths[0].read_bytes()
+    assert cli.main(["merge", *map(str, paths), "-o", str(paths[0]), "--parts", "remove", *skip]) == 1
+    assert "is one of the parts" in capsys.readouterr().err
+    assert names(tmp_path) == ["a.exr", "b.exr"] and paths[0].read_bytes() == before
+
+
+@pytest.mark.parametrize("there", ["picture", "8-16", "size"])
+def test_parts_are_not_removed_for_a_picture_that_is_not_theirs(there, parts, tmp_path):
+    paths = [tmp_path / "a.exr", tmp_path / "b.exr"]
+    for path, each in zip((*paths, tmp_path / "out.exr"), ("0-3", "3-8", there)):
+        path.write_bytes((parts / f"{each}.exr").read_bytes())
+    arguments = ["merge", *map(str, paths), "-o", str(tmp_path / "out.exr"), "--skip-existing", "--parts", "remove"]
+    assert cli.main(arguments) == 0
+    assert names(tmp_path) == ["out.exr"]
+    merge([parts / "0-3.exr", parts / "3-8.exr"], tmp_path / "wanted.exr")
+    assert_same_channels(channels_of(tmp_path / "out.exr"), channels_of(tmp_path / "wanted.exr"), ROUNDING)
+
+
+def test_a_picture_that_was_denoised_is_not_merged_again(tmp_path):
+    scene = glass()
+    scene.cycles.use_denoising = True
+    first, second, third = render_parts(scene, tmp_path)
+    merge([first, second], tmp_path / "some.exr", (scene, scene.view_layers[0]))
+    with pytest.raises(MergeError, match="is denoised, so that nothing can be added"):
+        merge([tmp_path / "some.exr", third], tmp_path / "all.exr")
+    assert not (tmp_path / "all.exr").exists()
