@@ -67,9 +67,10 @@ def _lacks_of(data: bpy.types.ID) -> Iterator[Lack]:
         yield from _lacks_of_object(data)
     elif isinstance(data, bpy.types.Scene):
         yield from _lacks_of_scene(data)
-    elif isinstance(
-        data, (bpy.types.Image, bpy.types.MovieClip, bpy.types.CacheFile, bpy.types.VectorFont, bpy.types.Volume)
-    ):
+    elif isinstance(data, bpy.types.Volume):
+        if data.filepath:  # also where Blender has packed the file, which it does not read from there
+            yield _lack_of_file(data.name, data.filepath, "a volume, which cannot be packed")
+    elif isinstance(data, (bpy.types.Image, bpy.types.MovieClip, bpy.types.CacheFile, bpy.types.VectorFont)):
         for path in bpy.data.file_path_map(subset={data})[data]:
             yield _lack_of_file(
                 data.name, path, _KINDS.get(getattr(data, "source", ""), "a file that cannot be packed")

@@ -50,8 +50,8 @@ def pack_files() -> list[str]:
 
 
 def _packed() -> set[bpy.types.ID]:
-    """Return all data with a file that is packed."""
-    owners = (bpy.data.images, bpy.data.fonts, bpy.data.sounds, bpy.data.volumes)
+    """Return all data with a file that is packed, from which it is shown: not volumes, which Blender packs and then misses."""
+    owners = (bpy.data.images, bpy.data.fonts, bpy.data.sounds)
     return {data for each in owners for data in each if data.packed_file is not None}
 
 
