@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import json
-import sys
-from contextlib import nullcontext
-from pathlib import Path
+from typing import Any
 
 import bpy
 
@@ -15,9 +12,8 @@ from ..checking.finding import Finding, to_json
 from ..checking.listing import STRICT, WRONG, in_lines, is_refused
 from ..fixing.fix import fix_all
 from ..model.files import require_place
-from ..model.streams import log_to_stderr
 from ..scene.output import save_blend
-from .shared import FOUND, AddParser, Failure, add_file, blend_name, open_file
+from .shared import FOUND, AddParser, Failure, add_file, add_json, blend_name, json_report, open_file
 
 CHECK_SCHEMA = 1
 """Version of the JSON that ``check`` writes; it is counted on when a key changes its meaning or goes."""
@@ -26,10 +22,10 @@ CHECK_SCHEMA = 1
 def add_command(add_parser: AddParser) -> None:
     check = add_parser("check", help="say what is wrong with the media of a .blend, where, and what would mend it")
     add_file(check)
-    check.add_argument("--json", action="store_true", help="write it as JSON")
     check.add_argument("--strict", action="store_true", help="take what is slow for wrong, too")
     check.add_argument("--fix", action="store_true", help="mend what can be mended safely, and save that as OUT.blend")
     check.add_argument("-o", "--output", type=blend_name, metavar="OUT.blend", help="file to write, with --fix")
+    add_json(check)
     check.set_defaults(run=_run)
 
 
@@ -38,37 +34,28 @@ def _run(options: argparse.Namespace) -> int:
 
     :returns: 0, or :data:`FOUND` where pictures would be wrong; with ``--strict`` also where they would be slow.
     """
-    if options.fix and options.output is None:
-        raise Failure("--fix needs a file to write: name it with --output")
-    if options.fix:
-        require_place(options.output)
-    with log_to_stderr() if options.json else nullcontext(sys.stdout) as output:
+    with json_report(options, CHECK_SCHEMA) as report:
+        report |= {"saved": None, "scenes": []}
+        if options.fix and options.output is None:
+            raise Failure("--fix needs a file to write: name it with --output")
+        if options.fix:
+            require_place(options.output)
         open_file(options.file)
         changes = {scene.name: list(fix_all(scene).changes) if options.fix else [] for scene in bpy.data.scenes}
         findings = {scene.name: check(scene) for scene in bpy.data.scenes}
         saved = save_blend(options.output) if options.fix else None
-        if options.json:
-            print(_as_json(findings, changes, saved), file=output, flush=True)
-        else:
-            for name, found in findings.items():
-                print("\n".join(in_lines(name, found, changes[name])))
-            if saved:
-                print(f"wrote {saved}")
+        report |= {"saved": None if saved is None else str(saved), "scenes": _as_json(findings, changes)}
+        for name, found in findings.items():
+            print("\n".join(in_lines(name, found, changes[name])))
+        if saved:
+            print(f"wrote {saved}")
     level = STRICT if options.strict else WRONG
     return FOUND if any(is_refused(found, level) for found in findings.values()) else 0
 
 
-def _as_json(findings: dict[str, list[Finding]], changes: dict[str, list[str]], saved: Path | None) -> str:
-    """Return what ``check`` has found as JSON."""
-    scenes = [
+def _as_json(findings: dict[str, list[Finding]], changes: dict[str, list[str]]) -> list[dict[str, Any]]:
+    """Return what ``check`` has found in each scene as JSON."""
+    return [
         {"scene": name, "findings": list(map(to_json, found)), "changes": changes[name]}
         for name, found in findings.items()
     ]
-    report = {
-        "schema": CHECK_SCHEMA,
-        "file": bpy.data.filepath,
-        "blender": bpy.app.version_string,
-        "saved": None if saved is None else str(saved),
-        "scenes": scenes,
-    }
-    return json.dumps(report, indent=2, ensure_ascii=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from ..farm.packing import pack
+from ..farm.packing import Packed, pack
 from .shared import FOUND, AddParser, add_backend, add_check, add_file, add_json, blend_name, json_report, open_file
 
 PACK_SCHEMA = 1
@@ -40,6 +40,7 @@ def _run(options: argparse.Namespace) -> int:
     :returns: 0, or :data:`FOUND` where nothing was written, as the file lacks something or ``--check`` found it wrong.
     """
     with json_report(options, PACK_SCHEMA) as report:
+        report |= Packed(None).as_json()
         open_file(options.file)
         packed = pack(options.output, options.cut, options.backend, options.check, options.keep_outside)
         report |= packed.as_json()

@@ -70,6 +70,7 @@ left.
 | Key | What it is |
 | --- | --- |
 | `schema`, `file`, `blender` | version of this form (1), the file, the version of Blender |
+| `version`, `error` | the extension's version; why the command failed, in one line, or null |
 | `saved` | the file that `--fix` wrote, or null |
 | `scenes` | for each scene: `scene`, its name; `changes`, what `--fix` changed, in sentences; `findings` |
 | `kind`, `severity` | of a finding: as above; `wrong picture`, `slow` or `note` |

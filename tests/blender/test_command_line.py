@@ -1,5 +1,6 @@
 """The command line, as a process of its own."""
 
+import json
 import re
 import sys
 from pathlib import Path
@@ -52,6 +53,14 @@ def test_a_failure_is_one_clear_line_and_exit_code_1(arguments, words):
     done = run(*arguments)
     assert done.returncode == 1
     assert_one_line(done.stderr, *words)
+
+
+@pytest.mark.parametrize("command", [("check",), ("pack", "-o", "out.blend"), ("render", "-o", "out.png")])
+def test_a_command_that_fails_says_why_in_json_and_on_the_last_line(command):
+    done = run(*command, "missing.blend", "--json")
+    report = json.loads(done.stdout)
+    assert done.returncode == 1 and report["schema"] == 1 and report["error"] == "missing.blend: no such file"
+    assert_one_line(done.stderr.splitlines()[-1], "missing.blend: no such file")  # after what Blender says
 
 
 def test_a_file_that_is_no_blend_is_named(tmp_path):
