@@ -38,7 +38,7 @@ def add_command(add_parser: AddParser) -> None:
     job = add_parser("submit", help="write a job of the Open Job Description that renders a .blend on many machines")
     add_file(job)
     job.add_argument(
-        "--to", type=file_name, required=True, metavar="DIR", help="folder to write, which must be new or empty"
+        "--to", type=_folder_name, required=True, metavar="DIR", help="folder to write, which must be new or empty"
     )
     job.add_argument("--name", help="name of the job (default: the file's)")
     job.add_argument(
@@ -114,6 +114,12 @@ def _run(options: argparse.Namespace) -> int:
     print(packed)
     print(f"wrote the job {job.name!r} to {absolute(options.to)}")
     return 0
+
+
+def _folder_name(text: str) -> Path:
+    if not text:
+        raise argparse.ArgumentTypeError(f"{text!r} is no folder's name")
+    return Path(text)
 
 
 def _frames(text: str) -> str:

@@ -21,7 +21,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from nested_dielectric.cli import main
 
-sys.exit(main(sys.argv[sys.argv.index("--") + 1 :]))
+arguments = sys.argv[sys.argv.index("--") + 1 :]
+if "-o" in arguments:
+    name = arguments[arguments.index("-o") + 1].rsplit("/", 1)[-1]
+    if "#" not in name:
+        print(f"OutputName {name}: all frames would go to one file; put #### in it", file=sys.stderr)
+        sys.exit(1)
+sys.exit(main(arguments))
 '''
 """Blender ends with the code that scripts exit with."""
 

@@ -80,8 +80,11 @@ def _require_sayable(job: Job) -> None:
             raise JobError(
                 f"{text[:40]}...: is longer than {_LONGEST_VALUE} characters; name ranges, or make several jobs"
             )
+    for text in (job.output, *job.options):
+        if any("\ud800" <= letter <= "\udfff" for letter in text):  # bytes of a path that are no text
+            raise JobError(f"{text!r}: is no text that jobs can hold; name the pictures with --output")
     for text in job.options:
-        if "{{" in text:
+        if "{{" in text or "}}" in text:
             raise JobError(f"{text!r}: has two braces in its name, by which jobs name parameters; rename it")
 
 

@@ -62,6 +62,8 @@ def new_folder(path: Path | str) -> Iterator[Path]:
     with _blaming(path):
         if os.path.lexists(target) and not (target.is_dir() and not any(target.iterdir())):
             raise WriteError(f"{path}: is there already; name a new folder, or an empty one")
+        if target == absolute(os.curdir):  # whoever is in it would be left in one that is gone
+            raise WriteError(f"{path}: is the folder that you are in, which would be replaced; name a new one in it")
         with _draft(target.parent) as draft:
             draft.path.mkdir()
             yield draft.path

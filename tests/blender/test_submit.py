@@ -1,6 +1,8 @@
 """Jobs of the Open Job Description as ``submit`` writes them: what they say, and what is refused."""
 
 import json
+import os
+import shutil
 from pathlib import Path
 
 import bpy
@@ -171,6 +173,24 @@ def test_a_file_that_lacks_a_picture_is_no_job(file, tmp_path, capsys):
     submit(lacking, tmp_path / "job", "--keep-outside")
 
 
-def test_names_that_jobs_would_read_are_refused():
+@pytest.mark.parametrize("name", ["{{Camera}}", "Camera}}"])
+def test_names_that_jobs_would_read_are_refused(name):
     with pytest.raises(JobError, match="rename it"):
-        template(Job("x", "1", "x_#.exr", 1, options=("--camera={{Camera}}",)))
+        template(Job("x", "1", "x_#.exr", 1, options=(f"--camera={name}",)))
+
+
+def test_a_file_whose_name_is_no_text_needs_another_for_its_pictures(file, tmp_path, capsys):
+    odd = tmp_path / os.fsdecode(b"ball\xff.blend")
+    shutil.copyfile(file, odd)
+    assert cli.main(["submit", str(odd), "--to", str(tmp_path / "job")]) == 1
+    assert "--output" in capsys.readouterr().err and not (tmp_path / "job").exists()
+    submit(odd, tmp_path / "job", "--output", "ball_##.png")
+
+
+def test_a_folder_may_end_in_a_slash_and_is_not_the_one_that_one_is_in(file, tmp_path, monkeypatch, capsys):
+    (tmp_path / "job").mkdir()
+    assert cli.main(["submit", str(file), "--to", f"{tmp_path}/job/"]) == 0
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    assert cli.main(["submit", str(file), "--to", "."]) == 1
+    assert "name a new one in it" in capsys.readouterr().err and Path.cwd().exists()

@@ -32,16 +32,17 @@ def blender(folder: Path) -> Path:
 
 
 class Job:
-    """A job in a folder, and where its pictures go."""
+    """A job in a folder, where its pictures go, and what else of its parameters is changed."""
 
-    def __init__(self, folder: Path, output: Path) -> None:
+    def __init__(self, folder: Path, output: Path, **parameters: str) -> None:
         self.template = folder / "template.json"
         self.output = output
+        self.parameters = parameters
         output.parent.mkdir(parents=True, exist_ok=True)
         self.blender = blender(output.parent)
 
     def _arguments(self, *arguments: object) -> list[str]:
-        parameters = {"Blender": str(self.blender), "OutputDir": str(self.output)}
+        parameters = {"Blender": str(self.blender), "OutputDir": str(self.output), **self.parameters}
         return [*OPENJD, "run", str(self.template), "-p", json.dumps(parameters), *map(str, arguments)]
 
     def run(self, step: str) -> subprocess.CompletedProcess:

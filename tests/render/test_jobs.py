@@ -127,6 +127,14 @@ def test_a_frame_in_ranges_of_samples_is_that_in_one_go(folder, bundle, tmp_path
         np.testing.assert_allclose(merged[f"ViewLayer.Combined.{channel}"], picture[channel], atol=5e-5)
 
 
+def test_frames_that_would_go_to_one_file_are_not_rendered(bundle, tmp_path):
+    """A task of one frame alone could not tell."""
+    job = Job(bundle, tmp_path / "out", OutputName="ball.png")
+    output, _ = job.start("Render", {"Frames": "1"}).communicate()
+    assert "OutputName ball.png: all frames would go to one file" in output and "exited with code: 1" in output
+    assert not job.output.exists()
+
+
 def test_a_file_that_is_wrong_ends_at_the_check_and_nothing_is_rendered(tmp_path):
     scene = new_scene(8, with_group=True)
     add_camera((0, -5, 0.3), (0, 0, 0), angle=28)
