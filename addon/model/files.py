@@ -15,6 +15,7 @@ import stat
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -262,8 +263,11 @@ def _listen(reader: socket.socket, ours: tuple[int, ...], folder: Path | str | N
 def _end(number: int, folder: Path | str | None) -> None:
     """End the process as the signal would, without what is unfinished."""
     _moving.acquire(timeout=PATIENCE)
+    until = time.monotonic() + PATIENCE
     for draft in _drafts:
         draft.discard()
+        while draft.path.is_dir() and time.monotonic() < until:  # something is still written to it, which fails soon
+            draft.discard()
     if folder is not None:
         with suppress(OSError):
             os.rmdir(folder)

@@ -5,6 +5,7 @@ import signal
 import stat
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -119,6 +120,30 @@ def test_a_process_that_is_ended_ends_as_of_the_signal_and_leaves_the_old_file(n
     assert path.read_bytes() == OLD
     left = [name for name in names(tmp_path) if name != "old.png"]
     assert len(left) == (number == signal.SIGKILL) and all(name.startswith(files.MARK) for name in left)
+
+
+FILLING = """
+import shutil, sys
+sys.path.insert(0, sys.argv[1])
+import files
+with files.ending_at_once(), files.new_folder(sys.argv[2]) as draft:
+    print("begun", flush=True)
+    for number in range(100000):
+        shutil.copytree(sys.argv[1], draft / "in" / str(number))
+"""
+
+
+@pytest.mark.parametrize("_", range(3))
+def test_a_folder_that_is_being_filled_when_the_process_is_ended_is_gone(_, tmp_path):
+    addon = Path(files.__file__).resolve().parent
+    process = subprocess.Popen(
+        [sys.executable, "-c", FILLING, addon, tmp_path / "new"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    )
+    assert process.stdout.readline()
+    time.sleep(0.1)
+    process.send_signal(signal.SIGTERM)
+    process.communicate(timeout=20)
+    assert process.returncode == -signal.SIGTERM and names(tmp_path) == []
 
 
 def test_signals_that_the_caller_handles_or_ignores_stay_his():
