@@ -186,10 +186,12 @@ def read_shot(file: Path, presets: Collection[str]) -> SimpleNamespace:
     :raises DescriptionError: names the file, the key and what is allowed.
     """
     try:
-        shot = group(shot_rules(presets))[1]("", json.loads(file.read_text(encoding="utf-8")))
+        shot = group(shot_rules(presets))[1]("", json.loads(file.read_text(encoding="utf-8-sig")))
         _check_together(shot)
     except OSError as error:
         raise DescriptionError(f"{file}: cannot be read ({error.strerror})") from None
+    except UnicodeDecodeError:
+        raise DescriptionError(f"{file}: is no text in UTF-8") from None
     except json.JSONDecodeError as error:
         raise DescriptionError(f"{file}: line {error.lineno}: is no JSON: {error.msg}") from None
     except DescriptionError as error:

@@ -127,6 +127,7 @@ def main() -> None:
         shot = read_shot(options.description, nd.preset_names())
         first, last = options.frames or (1, shot.camera.frames)
         check_output(options.output, several=first != last)
+        check_places(options.output, options.save)
         shot.render.samples = options.samples or shot.render.samples
         scene = prepared(build(shot))
     except DescriptionError as error:
@@ -135,7 +136,6 @@ def main() -> None:
         parser.exit(1, f"product_shot.py: {error}\n")
     scene.render.resolution_percentage = options.percentage
     if options.save:
-        options.save.absolute().parent.mkdir(parents=True, exist_ok=True)
         bpy.ops.wm.save_as_mainfile(filepath=str(options.save.absolute()))
     for frame in range(first, last + 1) if options.output else ():
         scene.frame_set(frame)
@@ -150,6 +150,17 @@ def check_output(output: Path | None, several: bool) -> None:
         raise DescriptionError(
             f"{output.name}: needs # for the frame's number, such as {output.stem}_####{output.suffix}"
         )
+
+
+def check_places(output: Path | None, save: Path | None) -> None:
+    """Make the folders of what is written; refuse a scene's file of another ending, and places that no folder can be."""
+    if save and save.suffix != ".blend":
+        raise DescriptionError(f"{save.name}: must end in .blend")
+    for path in filter(None, (output, save)):
+        try:
+            path.absolute().parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise DescriptionError(f"{path}: cannot be written ({error.strerror})") from None
 
 
 if __name__ == "__main__":

@@ -124,6 +124,12 @@ def test_a_wrong_description_is_refused_with_its_key_and_what_is_allowed(shots, 
     assert all(word in text for word in words), text
 
 
+def test_a_description_that_is_no_text_is_refused(shots, tmp_path):
+    (tmp_path / "shot.json").write_bytes(b"\xff{}")
+    with pytest.raises(shots.DescriptionError, match="no text in UTF-8"):
+        shots.read_shot(tmp_path / "shot.json", nd.preset_names())
+
+
 def test_ice_that_does_not_fit_and_walls_that_cross_are_refused_before_anything_is_rendered(shots, tmp_path):
     shot = read(shots, tmp_path, changed(ice={"count": 9, "size": 30}))
     with pytest.raises(shots.DescriptionError, match=r"ice\.count: 9 cubes of 30 mm do not fit .* \d do"):
@@ -140,6 +146,27 @@ def test_a_wrong_description_ends_with_2_and_one_line_and_leaves_nothing(tmp_pat
     )
     assert done.returncode == 2 and [path.name for path in tmp_path.iterdir()] == ["shot.json"]
     assert len(done.stderr.strip().splitlines()) == 1 and "camera.frames" in done.stderr
+
+
+@pytest.mark.parametrize(
+    "option, name, words",
+    [
+        ("--save", "scene.txt", "scene.txt: must end in .blend"),
+        ("--save", "shot.json/scene.blend", "cannot be written"),
+        ("-o", "shot.json/#.png", "cannot be written"),
+    ],
+)
+def test_places_that_cannot_be_written_are_named_before_anything_is_built(
+    shots, tmp_path, monkeypatch, capsys, option, name, words
+):
+    file = tmp_path / "shot.json"
+    file.write_bytes(b"\xef\xbb\xbf" + json.dumps(TUMBLER).encode())  # as Windows marks UTF-8
+    monkeypatch.setattr(sys, "argv", ["product_shot.py", str(file), option, str(tmp_path / name)])
+    monkeypatch.setattr(shots, "build", lambda shot: pytest.fail("something was built"))
+    with pytest.raises(SystemExit) as ended:
+        shots.main()
+    assert ended.value.code == 2 and words in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["shot.json"]
 
 
 def test_a_turntable_is_rendered_and_its_scene_kept(tmp_path):
