@@ -13,7 +13,7 @@ from ..checking.listing import STRICT, WRONG, in_lines, is_refused
 from ..fixing.fix import fix_all
 from ..model.files import require_place
 from ..scene.output import save_blend
-from .shared import FOUND, AddParser, Failure, add_file, add_json, blend_name, json_report, open_file
+from .shared import FOUND, AddParser, Failure, add_file, add_json, add_scene, blend_name, json_report, open_file
 
 CHECK_SCHEMA = 1
 """Version of the JSON that ``check`` writes; it is counted on when a key changes its meaning or goes."""
@@ -22,6 +22,7 @@ CHECK_SCHEMA = 1
 def add_command(add_parser: AddParser) -> None:
     check = add_parser("check", help="say what is wrong with the media of a .blend, where, and what would mend it")
     add_file(check)
+    add_scene(check, "all")
     check.add_argument("--strict", action="store_true", help="take what is slow for wrong, too")
     check.add_argument("--fix", action="store_true", help="mend what can be mended safely, and save that as OUT.blend")
     check.add_argument("-o", "--output", type=blend_name, metavar="OUT.blend", help="file to write, with --fix")
@@ -30,7 +31,7 @@ def add_command(add_parser: AddParser) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
-    """Say what is wrong with the media of all scenes of a file, and with ``--fix`` mend what is safe and save it.
+    """Say what is wrong with the media of all scenes of a file, or of one, and with ``--fix`` mend what is safe and save it.
 
     :returns: 0, or :data:`FOUND` where pictures would be wrong; with ``--strict`` also where they would be slow.
     """
@@ -40,9 +41,10 @@ def _run(options: argparse.Namespace) -> int:
             raise Failure("--fix needs a file to write: name it with --output")
         if options.fix:
             require_place(options.output)
-        open_file(options.file)
-        changes = {scene.name: list(fix_all(scene).changes) if options.fix else [] for scene in bpy.data.scenes}
-        findings = {scene.name: check(scene) for scene in bpy.data.scenes}
+        opened = open_file(options.file, options.scene)
+        scenes = list(bpy.data.scenes) if options.scene is None else [opened]
+        changes = {scene.name: list(fix_all(scene).changes) if options.fix else [] for scene in scenes}
+        findings = {scene.name: check(scene) for scene in scenes}
         saved = save_blend(options.output) if options.fix else None
         report |= {"saved": None if saved is None else str(saved), "scenes": _as_json(findings, changes)}
         for name, found in findings.items():

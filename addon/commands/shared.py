@@ -77,8 +77,8 @@ def named(things: Mapping[str, Any] | bpy.types.bpy_prop_collection, name: str, 
     return thing
 
 
-def add_scene(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--scene", metavar="S", help="scene of the file (default: the one that it was saved with)")
+def add_scene(parser: argparse.ArgumentParser, otherwise: str = "the one that it was saved with") -> None:
+    parser.add_argument("--scene", metavar="S", help=f"scene of the file (default: {otherwise})")
 
 
 def add_file(parser: argparse.ArgumentParser) -> None:

@@ -7,6 +7,8 @@ import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import bpy
+
 from ..model.files import new_folder
 from ..model.folders import ROOT
 from .job_template import PROGRAM, SCENE, TASK, Job, parameter_values, template
@@ -52,6 +54,7 @@ def write_job(folder: Path, job: Job, cut: bool, backend: str | None, keep_outsi
         packed = pack(draft / SCENE, cut, backend, keep_outside=keep_outside)
         if packed.saved is None:
             raise NotPacked(packed)
+        job = replace(job, scene=bpy.context.scene.name)  # as it is called in the packed file
         _copy_program(draft / PROGRAM)
         for name, content in (("template", template(job)), ("parameter_values", parameter_values(job))):
             text = json.dumps(content, indent=2, ensure_ascii=False)

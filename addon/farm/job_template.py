@@ -32,6 +32,7 @@ class JobError(RuntimeError):
 class Job:
     """A job.
 
+    :param scene: what is rendered, which alone is checked; its file opens with it.
     :param frames: a list as the command line takes it; output: the name of the pictures, with ``#`` for the frame.
     :param chunk: frames a task.
     :param ranges: of the samples, each a task of its own; none for whole frames.
@@ -47,6 +48,7 @@ class Job:
     denoised: bool = False
     check: str = WRONG
     options: tuple[str, ...] = ()
+    scene: str = "Scene"
 
 
 def template(job: Job) -> dict[str, Any]:
@@ -83,7 +85,7 @@ def _require_sayable(job: Job) -> None:
     for text in (job.output, *job.options):
         if any("\ud800" <= letter <= "\udfff" for letter in text):  # bytes of a path that are no text
             raise JobError(f"{text!r}: is no text that jobs can hold; name the pictures with --output")
-    for text in job.options:
+    for text in (*job.options, *([] if job.check == NO_CHECK else [job.scene])):
         if "{{" in text or "}}" in text:
             raise JobError(f"{text!r}: has two braces in its name, by which jobs name parameters; rename it")
 
@@ -118,7 +120,10 @@ def _parameter(name: str, kind: str, default: str | int, description: str, **mor
 
 
 def _check(job: Job) -> dict[str, Any]:
-    return {"name": "Check", "script": _run("check", *(["--strict"] if job.check == STRICT else []))}
+    return {
+        "name": "Check",
+        "script": _run("check", f"--scene={job.scene}", *(["--strict"] if job.check == STRICT else [])),
+    }
 
 
 def _render_frames(job: Job) -> dict[str, Any]:

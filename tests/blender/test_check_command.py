@@ -38,3 +38,14 @@ def test_fix_without_a_file_to_write_is_refused(tmp_path):
     done = run("check", save_scene(tmp_path), "--fix")
     assert done.returncode == 1
     assert_one_line(done.stderr, "--fix", "--output")
+
+
+def test_a_scene_that_is_named_is_checked_alone(tmp_path):
+    file = save_scene(tmp_path)
+    bpy.data.scenes.new("Other")
+    bpy.ops.wm.save_mainfile()
+    assert run("check", file).returncode == 3
+    done = run("check", file, "--scene", "Other")
+    assert done.returncode == 0 and "Other: nothing is wrong" in done.stdout and "Scene:" not in done.stdout
+    done = run("check", file, "--scene", "None")
+    assert done.returncode == 1 and "has no scene 'None'" in done.stderr

@@ -63,7 +63,7 @@ def test_a_job_renders_what_the_scene_does(file, tmp_path):
     assert (values["Frames"], values["OutputName"], values["ChunkSize"]) == ("3-21:2", "ball_####.png", 1)
     assert [each["name"] for each in said["steps"]] == ["Check", "Render"]
     assert said["steps"][1]["dependencies"] == [{"dependsOn": "Check"}]
-    assert command(said, "Check") == ["check"]
+    assert command(said, "Check") == ["check", "--scene=Scene"]
     stored = json.loads((tmp_path / "job" / "parameter_values.json").read_text(encoding="utf-8"))
     assert {each["name"]: each["value"] for each in stored["parameterValues"]}.items() <= values.items()
 
@@ -99,13 +99,14 @@ def test_a_job_says_what_was_asked_for(file, tmp_path):
     values = defaults(said)
     assert (values["Frames"], values["OutputName"], values["ChunkSize"]) == ("1-5,9", "shot.##.exr", 4)
     assert said["name"] == "{ {Shot} } 1 "
-    assert command(said, "Check") == ["check", "--strict"]
+    assert command(said, "Check") == ["check", "--scene=Scene", "--strict"]
     assert {"--camera=Camera", "--view-layer=ViewLayer", "--device=CPU"} <= set(command(said, "Render"))
     assert openjd("check", tmp_path / "job" / "template.json").returncode == 0
 
 
 def test_the_file_of_a_job_opens_with_the_scene_that_was_named(file, tmp_path):
-    submit(file, tmp_path / "job", "--scene", "Other")
+    said = submit(file, tmp_path / "job", "--scene", "Other")
+    assert command(said, "Check") == ["check", "--scene=Other"]
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "job" / "scene.blend"))
     assert bpy.context.scene.name == "Other"
 
