@@ -51,7 +51,7 @@ def write_job(folder: Path, job: Job, cut: bool, backend: str | None, keep_outsi
     :raises WriteError: if the folder cannot be written.
     """
     with new_folder(folder) as draft:
-        packed = pack(draft / SCENE, cut, backend, keep_outside=keep_outside)
+        packed = pack(draft / SCENE, cut, backend, keep_outside=keep_outside, relative=False)
         if packed.saved is None:
             raise NotPacked(packed)
         job = replace(job, scene=bpy.context.scene.name)  # as it is called in the packed file

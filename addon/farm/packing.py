@@ -71,6 +71,7 @@ def pack(
     backend: str | None = None,
     check: str | None = None,
     keep_outside: bool = False,
+    relative: bool = True,
 ) -> Packed:
     """Save the open file so that it needs no other: for machines without the extension that take one .blend.
 
@@ -83,6 +84,7 @@ def pack(
     :param backend: what renders the media, as for :func:`~nested_dielectric.preparation.prepare_scene.prepare`.
     :param check: refuse what a check finds wrong: ``"wrong"``, or ``"strict"`` for what is slow, too.
     :param keep_outside: save the file though it lacks something.
+    :param relative: let paths of what it lacks begin at the file, which goes along with it; else at the root.
     :raises WriteError: if the output is the file itself, or cannot be written.
     """
     if absolute(output) == absolute(bpy.data.filepath):
@@ -104,7 +106,7 @@ def pack(
     saved = None
     if not any(is_refused(found, check) for found in findings.values()):
         if lacks:
-            bpy.ops.file.make_paths_relative()
+            (bpy.ops.file.make_paths_relative if relative else bpy.ops.file.make_paths_absolute)()
         with _told_for_machines(scenes):
             saved = save_blend(output)
     return Packed(saved, tuple(done), lacks, findings, needs, notes)

@@ -172,6 +172,8 @@ def test_a_file_that_lacks_a_picture_is_no_job(file, tmp_path, capsys):
     assert cli.main(["submit", str(lacking), "--to", str(tmp_path / "job")]) == 3
     assert "lost.png" in capsys.readouterr().out and names(tmp_path) == ["x.blend"]
     submit(lacking, tmp_path / "job", "--keep-outside")
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "job" / "scene.blend"))  # which services put somewhere else
+    assert bpy.data.images["Label"].filepath == str(file.parent / "lost.png")
 
 
 @pytest.mark.parametrize("name", ["{{Camera}}", "Camera}}"])
