@@ -11,15 +11,14 @@ import bpy
 from ..checking.finding import to_json
 from ..model.files import absolute, require_place
 from ..model.frames import has_number, path_of_frame
-from ..nodes.render_with import OSL
 from ..preparation.prepare_scene import prepare
 from ..scene.chosen_view import cameras, layer_alone, through_camera
-from ..scene.devices import GPU, use_device
+from ..scene.devices import use_device
 from ..scene.frame_sequences import Frame, Rendered, State, is_there, line_of, number_of, render_frames, require_frames
 from ..scene.image_formats import file_format_of
 from ..scene.meanwhile import set_meanwhile
 from ..scene.progress import ProgressLine
-from .render_options import add_options
+from .render_options import add_options, require_device
 from .shared import AddParser, Failure, json_report, named, open_file
 
 RENDER_SCHEMA = 1
@@ -94,8 +93,7 @@ def _require_options(options: argparse.Namespace, frames: list[Frame]) -> None:
     file_format_of(options.output)
     if isinstance(options.samples, range) and options.time_limit is not None:
         raise Failure("--time-limit would cut ranges of samples short; leave it out, or name a number of --samples")
-    if options.device == GPU and options.backend == OSL:
-        raise Failure("--backend osl renders on the CPU alone; leave --device gpu out, or choose another backend")
+    require_device(options)
     for frame in frames:
         require_place(frame.path)
 

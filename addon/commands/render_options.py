@@ -6,8 +6,9 @@ import argparse
 import math
 
 from ..model.frames import parse_frames, parse_samples
-from ..scene.devices import DEVICES
-from .shared import add_backend, add_file, add_json, add_scene, file_name, parsed
+from ..nodes.render_with import OSL
+from ..scene.devices import DEVICES, GPU
+from .shared import Failure, add_backend, add_file, add_json, add_scene, file_name, parsed
 
 
 def add_options(render: argparse.ArgumentParser) -> None:
@@ -70,6 +71,15 @@ def _add_how(render: argparse.ArgumentParser) -> None:
         help="render media as they are; the default cuts their surfaces where they cross",
     )
     add_backend(render)
+
+
+def require_device(options: argparse.Namespace) -> None:
+    """Make sure that the device that was named runs the backend that was.
+
+    :raises Failure: if it does not.
+    """
+    if options.device == GPU and options.backend == OSL:
+        raise Failure("--backend osl renders on the CPU alone; leave --device gpu out, or choose another backend")
 
 
 def _seconds(text: str) -> float:

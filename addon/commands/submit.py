@@ -16,6 +16,7 @@ from ..scene.chosen_view import cameras
 from ..scene.devices import DEVICES
 from ..scene.image_formats import FILE_FORMATS, file_format_of
 from ..scene.rendering import require_picture
+from .render_options import require_device
 from .shared import (
     FOUND,
     AddParser,
@@ -90,6 +91,7 @@ def _run(options: argparse.Namespace) -> int:
 
     :returns: 0, or :data:`FOUND` where nothing was written, as the file lacks something.
     """
+    require_device(options)
     scene = open_file(options.file, options.scene)
     file = Path(bpy.data.filepath)
     output = options.output or Path(f"{file.stem}_####{_ending(scene, options.ranges)}")

@@ -140,6 +140,7 @@ def test_ranges_hold_all_samples_once_and_are_merged_and_denoised(file, tmp_path
         (["--scene", "None"], "has no scene 'None'"),
         (["--scene", "Empty"], "has no camera"),
         (["--camera", "None"], "has no camera 'None'"),
+        (["--device", "gpu", "--backend", "osl"], "renders on the CPU alone"),
         (["--frames", ",".join(map(str, range(1, 999, 2)))], "is longer than 1024 characters"),
     ],
 )
