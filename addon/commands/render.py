@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from contextlib import ExitStack
 from typing import Any
 
@@ -94,8 +95,9 @@ def _require_options(options: argparse.Namespace, frames: list[Frame]) -> None:
     if isinstance(options.samples, range) and options.time_limit is not None:
         raise Failure("--time-limit would cut ranges of samples short; leave it out, or name a number of --samples")
     require_device(options)
-    for frame in frames:
-        require_place(frame.path)
+    first, *others = (frame.path for frame in frames)  # all in one folder, which is tried once
+    for path in (first, *filter(os.path.lexists, others)):
+        require_place(path)
 
 
 def _choose(scene: bpy.types.Scene, options: argparse.Namespace, undo: ExitStack) -> None:

@@ -13,6 +13,8 @@ from scenes import new_scene, oiio, read_picture
 
 import nested_dielectric as nd
 from nested_dielectric import cli
+from nested_dielectric.commands import render
+from nested_dielectric.model.files import require_place
 from nested_dielectric.model.spectral_tables import spectral_table
 
 
@@ -53,6 +55,14 @@ def test_a_failure_is_one_clear_line_and_exit_code_1(arguments, words):
     done = run(*arguments)
     assert done.returncode == 1
     assert_one_line(done.stderr, *words)
+
+
+def test_the_folder_of_many_frames_is_tried_once_and_pictures_that_are_there_each(tmp_path, monkeypatch, capsys):
+    (tmp_path / "7.png").mkdir()
+    tried = []
+    monkeypatch.setattr(render, "require_place", lambda path: tried.append(path.name) or require_place(path))
+    assert cli.main(["render", "x.blend", "-o", str(tmp_path / "#.png"), "--frames", "1-1000"]) == 1
+    assert "7.png: cannot be written, as it is a folder" in capsys.readouterr().err and tried == ["1.png", "7.png"]
 
 
 @pytest.mark.parametrize("command", [("check",), ("pack", "-o", "out.blend"), ("render", "-o", "out.png")])
