@@ -11,7 +11,8 @@ import bpy
 
 from ..model.files import new_folder
 from ..model.folders import ROOT
-from .job_template import PROGRAM, SCENE, TASK, Job, parameter_values, template
+from ..scene.devices import GPU
+from .job_template import PROGRAM, SCENE, TASK, Job, JobError, parameter_values, template
 from .packing import Packed, pack
 
 _TASK = '''"""Run a command of Nested Dielectric in Blender: blender -b FILE.blend --python task.py -- COMMAND ..."""
@@ -48,6 +49,7 @@ def write_job(folder: Path, job: Job, cut: bool, backend: str | None, keep_outsi
     :param folder: a new one, or an empty one. It is there whole, or not at all.
     :param cut, backend, keep_outside: as for :func:`~nested_dielectric.farm.packing.pack`.
     :raises NotPacked: if the file cannot be packed.
+    :raises JobError: for a device that does not show what is meant.
     :raises WriteError: if the folder cannot be written.
     """
     with new_folder(folder) as draft:
@@ -55,11 +57,22 @@ def write_job(folder: Path, job: Job, cut: bool, backend: str | None, keep_outsi
         if packed.saved is None:
             raise NotPacked(packed)
         job = replace(job, scene=bpy.context.scene.name)  # as it is called in the packed file
+        _require_device(job, packed)
         _copy_program(draft / PROGRAM)
         for name, content in (("template", template(job)), ("parameter_values", parameter_values(job))):
             text = json.dumps(content, indent=2, ensure_ascii=False)
             (draft / f"{name}.json").write_text(f"{text}\n", encoding="utf-8")
     return replace(packed, saved=folder / SCENE)
+
+
+def _require_device(job: Job, packed: Packed) -> None:
+    """Refuse a GPU for a scene of which it would show the alarm."""
+    reasons = [reason for needs in packed.needs if needs.scene == job.scene for reason in needs.osl]
+    if reasons and f"--device={GPU}" in job.options:
+        raise JobError(
+            f"scene {job.scene!r}: needs Open Shading Language on the CPU ({reasons[0]}); leave out --device gpu, or choose "
+            "--backend native"
+        )
 
 
 def _copy_program(folder: Path) -> None:

@@ -14,6 +14,7 @@ from scenes import new_scene, oiio, read_picture
 import nested_dielectric as nd
 from nested_dielectric import cli
 from nested_dielectric.commands import render
+from nested_dielectric.model.colour_science import colour_science
 from nested_dielectric.model.files import require_place
 from nested_dielectric.model.spectral_tables import spectral_table
 
@@ -146,6 +147,7 @@ def test_bake_names_what_it_cannot_do_and_writes_nothing(arguments, words, tmp_p
 
 
 def test_bake_without_matplotlib_says_so_before_anything_is_written(tmp_path, monkeypatch, capsys):
+    colour_science()  # which would be left half imported
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)  # as in Blender's own Python
     arguments = ["bake", "-o", str(tmp_path / "table.exr"), "--plot", str(tmp_path / "plot.png")]
     assert cli.main(arguments) == 1

@@ -198,3 +198,14 @@ def test_a_folder_may_end_in_a_slash_and_is_not_the_one_that_one_is_in(file, tmp
     monkeypatch.chdir(tmp_path / "here")
     assert cli.main(["submit", str(file), "--to", "."]) == 1
     assert "name a new one in it" in capsys.readouterr().err and Path.cwd().exists()
+
+
+def test_a_gpu_is_refused_for_what_it_would_show_magenta(tmp_path, capsys):
+    new_scene(8)
+    add_camera((0, -5, 0.3), (0, 0, 0), angle=28)
+    add_sphere("Gem", 0.8, nd.new_material("Gem", preset="bk7", disperse=True, spectral_distribution="FL11"))
+    gem = save_blend(tmp_path / "gem.blend")
+    command = ["submit", str(gem), "--to", str(tmp_path / "job"), "--device", "gpu"]
+    assert cli.main(command) == 1 and names(tmp_path) == ["gem.blend"]
+    assert "scene 'Scene': needs Open Shading Language on the CPU ('Gem'" in capsys.readouterr().err
+    assert cli.main([*command, "--backend", "native"]) == 0
