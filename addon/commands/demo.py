@@ -16,7 +16,7 @@ from ..scene.image_formats import file_format_of
 from ..scene.output import save_blend
 from ..scene.progress import ProgressLine
 from ..scene.rendering import render_frame, sampling_time
-from .shared import AddParser, blend_name, file_name, positive
+from .shared import AddParser, blend_name, file_name, positive, show
 
 OUTPUT = Path("out/iced_water.png")
 
@@ -39,6 +39,7 @@ def _run(options: argparse.Namespace) -> None:
     for place in filter(None, (options.output, options.save)):
         require_place(place)
     scene = build_scene()
+    show(scene)
     print(prepare(scene, cut=True), flush=True)
     if options.save:
         save_blend(options.save)

@@ -55,14 +55,15 @@ def open_file(file: Path | None, scene: str | None = None) -> bpy.types.Scene:
             bpy.ops.wm.open_mainfile(filepath=str(absolute(file)))
         except RuntimeError as error:
             raise Failure(f"{file}: {error}") from None
-    return bpy.context.scene if scene is None else _open_scene(scene)
+    if scene is not None:
+        show(named(bpy.data.scenes, scene, "scene", "the file"))
+    return bpy.context.scene
 
 
-def _open_scene(name: str) -> bpy.types.Scene:
-    scene = named(bpy.data.scenes, name, "scene", "the file")
+def show(scene: bpy.types.Scene) -> None:
+    """Make a scene the one that Blender has open, and with which the file opens once it is saved."""
     for window in bpy.context.window_manager.windows:
         window.scene = scene
-    return scene
 
 
 def named(things: Mapping[str, Any] | bpy.types.bpy_prop_collection, name: str, kind: str, owner: str) -> Any:

@@ -34,4 +34,4 @@ def test_the_demo_command_renders_the_picture(tmp_path):
     red = picture[..., 0] > 2.5 * picture[..., 1]
     assert red[40:200].any() and red[340:460].any()
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "scene.blend"))
-    assert nd.get_priority(bpy.data.objects["Water"]) == 30
+    assert bpy.context.scene.name == "Iced Water" and nd.get_priority(bpy.context.scene.objects["Water"]) == 30
