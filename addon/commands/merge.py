@@ -12,6 +12,7 @@ import bpy
 from ..farm.merging import is_merged, merge, require_apart
 from ..model.files import absolute
 from ..model.frames import has_number, parse_frames, path_of_frame
+from ..scene.sample_ranges import denoised_layers
 from .shared import AddParser, Failure, add_scene, blend_name, file_name, open_file, parsed
 
 KEEP, REMOVE = "keep", "remove"
@@ -75,8 +76,8 @@ def _denoised(file: Path, name: str | None) -> tuple[bpy.types.Scene, bpy.types.
     :raises Failure: if it does not denoise.
     """
     scene = open_file(file, name)
-    layers = [layer for layer in scene.view_layers if layer.use and layer.cycles.use_denoising]
-    if not (scene.cycles.use_denoising and layers):
+    layers = denoised_layers(scene)
+    if not layers:
         raise Failure(f"{file}: scene {scene.name!r} does not denoise; leave out --denoise")
     return scene, layers[0]
 

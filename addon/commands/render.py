@@ -13,14 +13,14 @@ from ..checking.finding import to_json
 from ..model.files import absolute, require_place
 from ..model.frames import has_number, path_of_frame
 from ..preparation.prepare_scene import prepare
-from ..scene.chosen_view import cameras, layer_alone, through_camera
+from ..scene.chosen_view import layer_alone, through_camera
 from ..scene.devices import use_device
 from ..scene.frame_sequences import Frame, Rendered, State, is_there, line_of, number_of, render_frames, require_frames
 from ..scene.image_formats import file_format_of
 from ..scene.meanwhile import set_meanwhile
 from ..scene.progress import ProgressLine
-from .render_options import add_options, require_device
-from .shared import AddParser, Failure, json_report, named, open_file
+from .render_options import add_options, require_device, view_of
+from .shared import AddParser, Failure, json_report, open_file
 
 RENDER_SCHEMA = 1
 """Version of the JSON that ``render`` writes; it is counted on when a key changes its meaning or goes."""
@@ -102,11 +102,10 @@ def _require_options(options: argparse.Namespace, frames: list[Frame]) -> None:
 
 def _choose(scene: bpy.types.Scene, options: argparse.Namespace, undo: ExitStack) -> None:
     """Let a scene be rendered as the options say, and be afterwards as it was."""
-    if options.camera is not None:
-        camera = named(cameras(scene), options.camera, "camera", f"scene {scene.name!r}")
+    camera, layer = view_of(scene, options)
+    if camera is not None:
         undo.enter_context(through_camera(scene, camera))
-    if options.view_layer is not None:
-        layer = named(scene.view_layers, options.view_layer, "view layer", f"scene {scene.name!r}")
+    if layer is not None:
         undo.enter_context(layer_alone(scene, layer))
     if options.time_limit is not None:
         undo.enter_context(set_meanwhile(scene.cycles, time_limit=options.time_limit))

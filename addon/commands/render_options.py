@@ -5,10 +5,13 @@ from __future__ import annotations
 import argparse
 import math
 
+import bpy
+
 from ..model.frames import parse_frames, parse_samples
 from ..nodes.render_with import OSL
+from ..scene.chosen_view import cameras
 from ..scene.devices import DEVICES, GPU
-from .shared import Failure, add_backend, add_file, add_json, add_scene, file_name, parsed
+from .shared import Failure, add_backend, add_file, add_json, add_scene, file_name, named, parsed
 
 
 def add_options(render: argparse.ArgumentParser) -> None:
@@ -41,11 +44,30 @@ def _add_what(render: argparse.ArgumentParser) -> None:
         action="store_true",
         help="leave frames out whose picture is there, whole and of the right size",
     )
-    add_scene(render)
-    render.add_argument(
+    add_view(render)
+
+
+def add_view(parser: argparse.ArgumentParser) -> None:
+    """Add the options that name what of a file is rendered."""
+    add_scene(parser)
+    parser.add_argument(
         "--camera", metavar="C", help="camera to render through (default: the scene's, and its markers')"
     )
-    render.add_argument("--view-layer", metavar="L", help="the one view layer to render (default: all that are in use)")
+    parser.add_argument("--view-layer", metavar="L", help="the one view layer to render (default: all that are in use)")
+
+
+def view_of(
+    scene: bpy.types.Scene, options: argparse.Namespace
+) -> tuple[bpy.types.Object | None, bpy.types.ViewLayer | None]:
+    """Return the camera and the view layer of a scene that options name; None for what they leave to the scene.
+
+    :raises Failure: for a name that there is not.
+    """
+    owner = f"scene {scene.name!r}"
+    camera = None if options.camera is None else named(cameras(scene), options.camera, "camera", owner)
+    if options.view_layer is None:
+        return camera, None
+    return camera, named(scene.view_layers, options.view_layer, "view layer", owner)
 
 
 def _add_how(render: argparse.ArgumentParser) -> None:

@@ -12,20 +12,18 @@ from ..farm.job import NotPacked, write_job
 from ..farm.job_template import CHECKS, Job
 from ..model.files import absolute
 from ..model.frames import has_number, list_frames, parse_frames
-from ..scene.chosen_view import cameras
 from ..scene.devices import DEVICES
 from ..scene.image_formats import FILE_FORMATS, file_format_of
 from ..scene.rendering import require_picture
-from .render_options import require_device
+from ..scene.sample_ranges import denoised_layers
+from .render_options import add_view, require_device, view_of
 from .shared import (
     FOUND,
     AddParser,
     Failure,
     add_backend,
     add_file,
-    add_scene,
     file_name,
-    named,
     open_file,
     parsed,
     positive,
@@ -70,9 +68,7 @@ def add_command(add_parser: AddParser) -> None:
         help="let the job begin with a check that ends it where pictures would be "
         "wrong (default), with strict also where they would be slow; or not",
     )
-    add_scene(job)
-    job.add_argument("--camera", metavar="C", help="camera to render through (default: the scene's)")
-    job.add_argument("--view-layer", metavar="L", help="the one view layer to render (default: all that are in use)")
+    add_view(job)
     job.add_argument(
         "--device", type=str.upper, choices=DEVICES, help="what renders on the workers (default: as the file has it)"
     )
@@ -97,14 +93,14 @@ def _run(options: argparse.Namespace) -> int:
     output = options.output or Path(f"{file.stem}_####{_ending(scene, options.ranges)}")
     ranges = _ranges(scene, options.ranges or 0)
     _require_output(scene, output, ranges)
-    _require_named(scene, options)
+    view_of(scene, options)  # which names what is not there
     job = Job(
         options.name or file.stem,
         options.frames or _scene_frames(scene, ranges),
         str(output),
         options.chunk,
         ranges,
-        any(layer.use and layer.cycles.use_denoising for layer in scene.view_layers) and scene.cycles.use_denoising,
+        bool(denoised_layers(scene)),
         options.check,
         (*_forwarded(options), *(["--no-cut"] if options.no_cut else [])),
     )
@@ -173,18 +169,6 @@ def _require_output(scene: bpy.types.Scene, output: Path, ranges: tuple[range, .
     if not has_number(output):
         raise Failure(f"{output}: all frames would go to one file; put #### in its name")
     require_picture(scene, output, ranges[0] if ranges else None)
-
-
-def _require_named(scene: bpy.types.Scene, options: argparse.Namespace) -> None:
-    """Make sure that what the options name is there.
-
-    :raises Failure: if it is not.
-    """
-    there = f"scene {scene.name!r}"
-    if options.camera is not None:
-        named(cameras(scene), options.camera, "camera", there)
-    if options.view_layer is not None:
-        named(scene.view_layers, options.view_layer, "view layer", there)
 
 
 def _forwarded(options: argparse.Namespace) -> list[str]:

@@ -53,6 +53,13 @@ def require_part(scene: bpy.types.Scene, output: Path | str, samples: range) -> 
         )
 
 
+def denoised_layers(scene: bpy.types.Scene) -> list[bpy.types.ViewLayer]:
+    """Return the view layers of a scene whose pictures are denoised."""
+    return [
+        layer for layer in scene.view_layers if scene.cycles.use_denoising and layer.use and layer.cycles.use_denoising
+    ]
+
+
 @contextmanager
 def rendering_part(scene: bpy.types.Scene, samples: range) -> Iterator[None]:
     """Let renders of a scene draw some of its samples alone, and nothing work on their result.
@@ -62,9 +69,8 @@ def rendering_part(scene: bpy.types.Scene, samples: range) -> Iterator[None]:
     """
     cycles = scene.cycles
     with ExitStack() as undo:
-        for layer in scene.view_layers if cycles.use_denoising else ():
-            if layer.cycles.use_denoising:
-                undo.enter_context(set_meanwhile(layer.cycles, denoising_store_passes=True))
+        for layer in denoised_layers(scene):
+            undo.enter_context(set_meanwhile(layer.cycles, denoising_store_passes=True))
         undo.enter_context(
             set_meanwhile(
                 cycles,
